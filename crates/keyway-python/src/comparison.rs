@@ -2,7 +2,7 @@
 
 use crate::arrays::{Json, JsonRows, json};
 use crate::errors::{bad_value, why_without_path};
-use crate::map::Map;
+use crate::given_map::GivenMap;
 use crate::parameters::{Parameters, RobotName};
 use crate::values::Listed;
 use crate::watched::{Progress, Watch, watched};
@@ -102,7 +102,7 @@ impl Comparison {
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn compare(
     py: Python<'_>,
-    grid: &Map,
+    grid: GivenMap,
     planners: Option<Listed<String>>,
     smoothers: Option<Listed<String>>,
     queries: u64,
@@ -141,11 +141,11 @@ pub(crate) fn compare(
 
 /// Names of a list; without a list, the default names.
 fn names(argument: &str, list: Option<Listed<String>>) -> PyResult<Vec<String>> {
-    match list {
-        Some(Listed(names)) if names.is_empty() => {
+    match list.map(|list| list.named(argument)).transpose()? {
+        Some(names) if names.is_empty() => {
             Err(bad_value(format!("{argument}: expected at least one name")))
         }
-        list => Ok(list.map(|Listed(names)| names).unwrap_or_default()),
+        names => Ok(names.unwrap_or_default()),
     }
 }
 

@@ -12,6 +12,7 @@ mod arrays;
 mod batch;
 mod comparison;
 mod errors;
+mod given_map;
 mod map;
 mod measured;
 mod navigator;

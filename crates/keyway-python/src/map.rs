@@ -53,11 +53,12 @@ impl Map {
         PlannerParts { grid: Arc::clone(&self.grid) }
     }
 
-    fn mask(&self, py: Python<'_>, bits: &BitGrid) -> PyResult<Mask> {
+    /// Creates a mask of the cells for which a function is true.
+    pub(crate) fn mask(&self, py: Python<'_>, is_set: impl Fn(Cell) -> bool) -> PyResult<Mask> {
         check_memory(self.grid.frame().cell_count())?;
         let (width, height) =
             (self.grid.frame().width() as usize, self.grid.frame().height() as usize);
-        let get = |(y, x): (usize, usize)| bits.get(Cell::new(x as i32, y as i32));
+        let get = |(y, x): (usize, usize)| is_set(Cell::new(x as i32, y as i32));
         let mask = Array2::from_shape_fn((height, width), get);
         Ok(Mask(PyArray2::from_owned_array(py, mask).unbind()))
     }
@@ -70,11 +71,11 @@ type Parts = (Occupancy, (u8, u8), f64, (f64, f64, f64), String, Option<(f64, [f
 fn read_grid(
     cells: &Grid<'_>,
     resolution: f64,
-    origin: Option<&Numbers>,
+    origin: Pose,
     of_values: impl FnOnce(GridFrame, Vec<u8>) -> Result<OccupancyGrid, OccupancyError>,
 ) -> PyResult<OccupancyGrid> {
     let (rows, columns) = cells.shape();
-    let frame = GridFrame::new(columns as u64, rows as u64, resolution, pose(origin)?);
+    let frame = GridFrame::new(columns as u64, rows as u64, resolution, origin);
     let frame = frame.map_err(bad_value)?;
     // A bit each for occupied and unknown; values are kept as they are.
     let bits = frame.cell_count() / 4;
@@ -117,9 +118,9 @@ impl Map {
     }
 }
 
-fn pose(origin: Option<&Numbers>) -> PyResult<Pose> {
+fn pose(py: Python<'_>, origin: Option<&Numbers>) -> PyResult<Pose> {
     let Some(origin) = origin else { return Ok(Pose::default()) };
-    let (at, yaw_rad) = origin.place("origin")?;
+    let (at, yaw_rad) = origin.place(py, "origin")?;
     Ok(Pose::new(at.x, at.y, yaw_rad.unwrap_or_default()))
 }
 
@@ -146,6 +147,7 @@ impl Map {
     #[staticmethod]
     #[pyo3(signature = (occupied, resolution, origin=None, occupied_threshold=65, free_threshold=25))]
     fn from_array(
+        py: Python<'_>,
         occupied: Grid<'_>,
         resolution: f64,
         origin: Option<Numbers>,
@@ -154,7 +156,8 @@ impl Map {
     ) -> PyResult<Self> {
         let thresholds = OccupancyThresholds::new(occupied_threshold, free_threshold);
         let thresholds = thresholds.map_err(bad_value)?;
-        let grid = read_grid(&occupied, resolution, origin.as_ref(), |frame, values| {
+        let origin = pose(py, origin.as_ref())?;
+        let grid = read_grid(&occupied, resolution, origin, |frame, values| {
             OccupancyGrid::from_values(frame, values, thresholds)
         })?;
         Ok(map_of_array(grid))
@@ -173,7 +176,7 @@ impl Map {
     /// FileNotFoundError: cannot read nowhere.yaml: there is no such file or folder
     #[staticmethod]
     #[pyo3(signature = (path, resolution=None, origin=None, max_cells=None))]
-    fn read(
+    pub(crate) fn read(
         py: Python<'_>,
         path: PathBuf,
         resolution: Option<f64>,
@@ -182,21 +185,23 @@ impl Map {
     ) -> PyResult<Self> {
         let usual = ImagePlacement::default();
         let is_given = resolution.is_some() || origin.is_some();
-        let origin = pose(origin.as_ref())?;
+        let origin = pose(py, origin.as_ref())?;
         let resolution_m = resolution.unwrap_or(usual.resolution_m);
         let placement = is_given.then_some(ImagePlacement { resolution_m, origin });
         let max_cells = max_cells.unwrap_or(DEFAULT_MAX_CELLS);
         let reader = MapReader { placement, max_cells };
         let loaded = py.detach(|| reader.read(&path)).map_err(|error| {
             match error.too_many_cells().map(TooManyCells::needed) {
-                Some(needed) => bad_value(format!("{error} with max_cells={needed}")),
+                Some(needed) => {
+                    bad_value(format!("{error} with keyway.Map.read(path, max_cells={needed})"))
+                }
                 None => map_error(&error),
             }
         })?;
         for warning in &loaded.warnings {
             let advice = match warning {
                 MapWarning::Resolution { .. } => {
-                    "; set it with `resolution`, or use the map's YAML file"
+                    "; set it with keyway.Map.read(path, resolution=...), or use the map's YAML file"
                 }
                 _ => "",
             };
@@ -246,13 +251,13 @@ impl Map {
     /// Mask of the occupied cells: a new array of bool of shape (rows, columns).
     #[getter]
     fn occupied(&self, py: Python<'_>) -> PyResult<Mask> {
-        self.mask(py, self.grid.occupied())
+        self.mask(py, |cell| self.grid.occupied().get(cell))
     }
 
     /// Mask of the unknown cells: a new array of bool of shape (rows, columns).
     #[getter]
     fn unknown(&self, py: Python<'_>) -> PyResult<Mask> {
-        self.mask(py, self.grid.unknown())
+        self.mask(py, |cell| self.grid.unknown().get(cell))
     }
 
     /// The map as in `nav_msgs`: a new array of int8, -1 unknown, 0 free, 100 occupied.
@@ -337,8 +342,9 @@ impl Map {
     ) -> PyResult<Self> {
         let (occupied, free) = thresholds;
         let thresholds = OccupancyThresholds::new(occupied, free).map_err(bad_value)?;
-        let origin = Numbers::from(<[f64; 3]>::from(origin));
-        let made = map_of_array(read_grid(&values, resolution, Some(&origin), |frame, values| {
+        let (x, y, yaw_rad) = origin;
+        let origin = Pose::new(x, y, yaw_rad);
+        let made = map_of_array(read_grid(&values, resolution, origin, |frame, values| {
             OccupancyGrid::from_known_values(frame, values, thresholds)
         })?);
         let placement =

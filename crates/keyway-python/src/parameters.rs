@@ -41,7 +41,7 @@ const MOST_NESTED: usize = 100;
 fn table(dict: &Bound<'_, PyDict>, depth: usize) -> PyResult<Table> {
     let entry = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
         let key = key.extract::<String>().map_err(|_| {
-            bad_value(format!("the names of parameters must be strings, got {}", described(&key)))
+            bad_value(format!("names of parameters are strings, got {}", described(&key)))
         })?;
         let value = value_of(&value, depth + 1, &key)?;
         Ok((key, value))
@@ -88,7 +88,7 @@ fn value_of(object: &Bound<'_, PyAny>, depth: usize, name: &str) -> PyResult<Val
         }
     }
     Err(bad_value(format!(
-        "`{name}`: expected a string, a number, a bool, a list or a dictionary, got {}",
+        "`{name}`: expected a string, a number, a boolean, a list or a dictionary, got {}",
         described(object)
     )))
 }

@@ -1,7 +1,7 @@
 //! Planning.
 
 use crate::errors::bad_value;
-use crate::map::Map;
+use crate::given_map::GivenMap;
 use crate::parameters::{Parameters, RobotName};
 use crate::plan::Plan;
 use crate::ready::{ChoiceRef, Ready};
@@ -39,7 +39,7 @@ impl Planner {
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
-        grid: &Map,
+        grid: GivenMap,
         radius: Option<f64>,
         planner: &str,
         smoother: &str,
@@ -242,6 +242,8 @@ fn all_routes(
 
 /// Plans a path on a map from one position to another [m], and smooths it.
 ///
+/// `grid` is a map, or the path of its file, which is then read at every call.
+///
 /// `planner` and `smoother` are names of `keyway.names`. `radius` is the clearance of the path to
 /// every obstacle [m]; with `robot` it is the robot's inscribed radius instead. `parameters` are
 /// those of the TOML files, as a dictionary:
@@ -273,7 +275,7 @@ fn all_routes(
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn plan(
     py: Python<'_>,
-    grid: &Map,
+    grid: GivenMap,
     start: Numbers,
     goal: Numbers,
     radius: Option<f64>,
@@ -312,7 +314,7 @@ pub(crate) fn plan(
 #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub(crate) fn plan_many(
     py: Python<'_>,
-    grid: &Map,
+    grid: GivenMap,
     starts: Positions,
     goals: Positions,
     radius: Option<f64>,

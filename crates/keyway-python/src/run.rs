@@ -2,14 +2,17 @@
 
 use crate::arrays::{Floats2, Json, Records, json, of_points, records};
 use crate::errors::{bad_value, scene_navigate_error};
+use crate::map::Map;
 use crate::pictures;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneOrFile};
 use crate::watched::{Cycles, Progress, watched};
-use keyway::geometry::Polyline;
+use keyway::geometry::{Disc, Polyline};
 use keyway::map::OccupancyGrid;
 use keyway_draw::Svg;
 use keyway_sim::episode::{RobotReport, RunError, RunOptions, watch_episode};
 use keyway_sim::parallel::processors;
+use keyway_sim::report::{Inputs, MapSource};
+use keyway_sim::sim::MovingObstacle;
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
@@ -65,6 +68,40 @@ impl Run {
         Floats2(of_points(py, smoothed.map_or(&[], Polyline::points)))
     }
 
+    /// Start of the robot (x, y) [m], or with a given heading (x, y, yaw) [m, m, rad]. In `report`
+    /// headings are in degrees.
+    #[getter]
+    fn start(&self) -> Vec<f64> {
+        in_radians(&self.report.inputs.start)
+    }
+
+    /// Goal of the robot (x, y) [m], or with a given heading (x, y, yaw) [m, m, rad].
+    #[getter]
+    fn goal(&self) -> Vec<f64> {
+        in_radians(&self.report.inputs.goal)
+    }
+
+    /// The map that was known to the robot.
+    #[getter]
+    fn map(&self) -> Map {
+        let Inputs { map, map_digest, placement, .. } = &self.report.inputs;
+        let source =
+            MapSource { name: map.clone(), digest: map_digest.clone(), placement: *placement };
+        Map::shared(Arc::clone(&self.grid), source)
+    }
+
+    /// The moving obstacles during the run: for each, a structured array with the fields `t_s`,
+    /// `x_m`, `y_m` and `radius_m`, all float64, at the times of `trajectory`. Where an obstacle
+    /// jumps, a row has a position of NaN.
+    #[getter]
+    fn moving(&self, py: Python<'_>) -> PyResult<Vec<Records>> {
+        let given = &self.report.inputs.moving;
+        let run = self.report.run.as_ref();
+        let moving = run.map_or_else(|| given.clone(), |run| run.movers(given));
+        let times: Vec<f64> = self.report.trajectory.iter().flatten().map(|row| row[0]).collect();
+        moving.iter().map(|obstacle| moved(py, obstacle, &times)).collect()
+    }
+
     /// Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`,
     /// `length_m`, `min_clearance_m` and more. It is empty if there was no route.
     #[getter]
@@ -97,6 +134,31 @@ impl Run {
     }
 }
 
+/// Converts a place with a heading in degrees.
+fn in_radians(place: &[f64]) -> Vec<f64> {
+    let mut place = place.to_vec();
+    if let Some(heading) = place.get_mut(2) {
+        *heading = heading.to_radians();
+    }
+    place
+}
+
+/// Positions of a moving obstacle at some times, separated where it jumps.
+fn moved(py: Python<'_>, obstacle: &MovingObstacle, times: &[f64]) -> PyResult<Records> {
+    let (mut rows, mut last_s) = (Vec::with_capacity(times.len()), f64::INFINITY);
+    for &t_s in times {
+        let jump_s = obstacle.motion().next_jump_s(last_s.min(t_s));
+        if jump_s.is_some_and(|jump_s| jump_s <= t_s) {
+            rows.push([t_s, f64::NAN, f64::NAN, obstacle.radius_m()]);
+        }
+        let Disc { centre, radius_m } = obstacle.at(t_s);
+        rows.push([t_s, centre.x, centre.y, radius_m]);
+        last_s = t_s;
+    }
+    let count = rows.len();
+    records(py, ["t_s", "x_m", "y_m", "radius_m"], rows.into_iter(), count)
+}
+
 pub(crate) fn run_error(error: &RunError) -> PyErr {
     match error {
         RunError::Navigate(error) => scene_navigate_error(error),
@@ -104,7 +166,8 @@ pub(crate) fn run_error(error: &RunError) -> PyErr {
     }
 }
 
-/// Simulates the run of a scene. The same scene gives the same run, to the last digit.
+/// Simulates the run of a scene. The same scene gives the same run, to the last digit. A scene may
+/// be the path of its file.
 ///
 /// A start without a route, a collision and a timeout are outcomes, not exceptions.
 /// `progress(cycles, None)` is called meanwhile. With `times`, the times of decisions are
@@ -120,11 +183,11 @@ pub(crate) fn run_error(error: &RunError) -> PyErr {
 #[pyo3(signature = (scene, progress=None, times=false))]
 pub(crate) fn simulate(
     py: Python<'_>,
-    scene: &Scene,
+    scene: SceneOrFile,
     progress: Option<Progress>,
     times: bool,
 ) -> PyResult<Run> {
-    let scene = scene.clone();
+    let scene = Scene::clone(&scene);
     watched(py, progress.as_ref(), move |watch| {
         let episode = scene.episode_of_one()?;
         let begin = Instant::now();
@@ -160,10 +223,10 @@ pub(crate) fn simulate(
 #[pyo3(signature = (scene, progress=None))]
 pub(crate) fn simulate_team(
     py: Python<'_>,
-    scene: &Scene,
+    scene: SceneOrFile,
     progress: Option<Progress>,
 ) -> PyResult<Vec<Run>> {
-    let scene = scene.clone();
+    let scene = Scene::clone(&scene);
     watched(py, progress.as_ref(), move |watch| {
         let episode = scene.episode()?;
         let mut cycles: Vec<Cycles<'_>> = episode.robots.iter().map(|_| Cycles(watch)).collect();

@@ -3,7 +3,7 @@
 use crate::errors::bad_value;
 use crate::run::run_error;
 use crate::scan::Scan;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneOrFile};
 use crate::watched::{Progress, watched};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Limits;
@@ -57,8 +57,8 @@ fn name(outcome: Outcome) -> &'static str {
 impl Simulation {
     #[new]
     #[pyo3(signature = (scene, progress=None))]
-    fn new(py: Python<'_>, scene: &Scene, progress: Option<Progress>) -> PyResult<Self> {
-        let scene = scene.clone();
+    fn new(py: Python<'_>, scene: SceneOrFile, progress: Option<Progress>) -> PyResult<Self> {
+        let scene = Scene::clone(&scene);
         let (stepper, mut episode) = watched(py, progress.as_ref(), move |_| {
             let mut episode: Episode = scene.episode_of_one()?;
             episode.rules.arrival = Arrival::Passing;

@@ -1,6 +1,6 @@
 //! Conversion of arguments: positions, poses, ranges, grids.
 
-use crate::errors::bad_value;
+use crate::errors::{bad_value, warn};
 use keyway::geometry::Point;
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
@@ -8,7 +8,9 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 #[cfg(feature = "stubs")]
 use pyo3::type_hint_union;
-use pyo3::types::PyComplex;
+use pyo3::types::{PyComplex, PyString};
+use std::f64::consts::TAU;
+use std::path::PathBuf;
 
 /// Type of a numeric argument in the stubs.
 macro_rules! numbers_hint {
@@ -42,7 +44,7 @@ impl<'py> FromPyObject<'_, 'py> for Numbers {
             let text = format!("expected numbers such as (1.0, 2.0), got {}", described(&object));
             PyTypeError::new_err(text)
         };
-        let is_text = object.is_instance_of::<pyo3::types::PyString>();
+        let is_text = object.is_instance_of::<PyString>();
         let length = object.len().ok().filter(|length| *length <= 3 && !is_text);
         if length.is_none() {
             return Err(expected(bad_value("")));
@@ -57,12 +59,6 @@ impl<'py> FromPyObject<'_, 'py> for Numbers {
     }
 }
 
-impl<const N: usize> From<[f64; N]> for Numbers {
-    fn from(numbers: [f64; N]) -> Self {
-        Self(numbers.to_vec())
-    }
-}
-
 impl Numbers {
     /// A position \[m\].
     pub(crate) fn position(&self, name: &str) -> PyResult<Point> {
@@ -72,11 +68,18 @@ impl Numbers {
         }
     }
 
-    /// A position \[m\], or a pose \[m, m, rad\].
-    pub(crate) fn place(&self, name: &str) -> PyResult<(Point, Option<f64>)> {
+    /// A position \[m\], or a pose \[m, m, rad\]. A heading of more than a turn is probably in
+    /// degrees, and gives a warning.
+    pub(crate) fn place(&self, py: Python<'_>, name: &str) -> PyResult<(Point, Option<f64>)> {
         match self.0[..] {
             [x, y] => Ok((finite(Point::new(x, y), name)?, None)),
             [x, y, heading_rad] if heading_rad.is_finite() => {
+                if heading_rad.abs() > TAU + 1e-6 {
+                    let text = format!(
+                        "{name}: {heading_rad} is more than a turn: headings are in radians, and only in files in degrees"
+                    );
+                    warn(py, &text)?;
+                }
                 Ok((finite(Point::new(x, y), name)?, Some(heading_rad)))
             }
             [_, _, heading_rad] => Err(bad_value(format!(
@@ -97,6 +100,11 @@ impl Numbers {
     }
 }
 
+/// A position \[m\], with its heading \[rad\] if it has one.
+pub(crate) fn place(Point { x, y }: Point, heading_rad: Option<f64>) -> Vec<f64> {
+    [Some(x), Some(y), heading_rad].into_iter().flatten().collect()
+}
+
 /// Formats a position for messages, with few digits.
 pub(crate) fn point_text(Point { x, y }: Point) -> String {
     let is_short = x.abs().max(y.abs()) < 1e9;
@@ -113,23 +121,69 @@ fn finite(point: Point, name: &str) -> PyResult<Point> {
     )))
 }
 
-/// A list of texts or paths. A single text is refused: Python would treat it as a list of
-/// letters.
-pub(crate) struct Listed<T>(pub(crate) Vec<T>);
+/// A list of strings or paths, or the description of something else. A single string is refused:
+/// Python would treat it as a list of letters.
+pub(crate) struct Listed<T>(Result<Vec<T>, String>);
 
-impl<'py, T: FromPyObjectOwned<'py>> FromPyObject<'_, 'py> for Listed<T> {
+/// Items of a list, with their name for messages.
+pub(crate) trait Item {
+    const NAME: &str;
+}
+
+impl Item for String {
+    const NAME: &str = "strings";
+}
+
+impl Item for PathBuf {
+    const NAME: &str = "paths";
+}
+
+impl<'py, T: FromPyObjectOwned<'py> + Item> FromPyObject<'_, 'py> for Listed<T> {
     type Error = PyErr;
     #[cfg(feature = "stubs")]
     const INPUT_TYPE: pyo3::inspect::PyStaticExpr = Vec::<T>::INPUT_TYPE;
 
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        object.extract().map(Self).map_err(|error: PyErr| {
-            let got = described(&object);
-            let why = error.value(object.py()).to_string();
-            let why = if got == "str" { "put it into a list" } else { &why };
-            PyTypeError::new_err(format!("expected a list of strings, got {got}: {why}"))
+        let item = |item: &Bound<'py, PyAny>| item.extract::<T>().map_err(Into::into);
+        Ok(Self(items(&object).and_then(|all| listed(&all, item))))
+    }
+}
+
+impl<T: Item> Listed<T> {
+    /// Returns the items of the argument of this name.
+    pub(crate) fn named(self, name: &str) -> PyResult<Vec<T>> {
+        self.0.map_err(|got| {
+            PyTypeError::new_err(format!("{name}: expected a list of {}, got {got}", T::NAME))
         })
     }
+}
+
+/// Returns the items of a list or a tuple, or the description of something else.
+pub(crate) fn items<'py>(object: &Bound<'py, PyAny>) -> Result<Vec<Bound<'py, PyAny>>, String> {
+    if is_path(object) {
+        return Err(format!("{}: put it into a list", described(object)));
+    }
+    object.extract().map_err(|_: PyErr| described(object))
+}
+
+/// Converts all items, or describes the first one that cannot be.
+pub(crate) fn listed<'py, T>(
+    items: &[Bound<'py, PyAny>],
+    convert: impl Fn(&Bound<'py, PyAny>) -> PyResult<T>,
+) -> Result<Vec<T>, String> {
+    let described = |(i, item): (usize, &Bound<'py, PyAny>)| {
+        convert(item).map_err(|error| {
+            // A string may be wrong, too, such as one that is no valid Unicode.
+            let why = if is_path(item) { format!(": {error}") } else { String::new() };
+            format!("{} at index {i}{why}", described(item))
+        })
+    };
+    items.iter().enumerate().map(described).collect()
+}
+
+/// True if an argument is a string or an `os.PathLike`.
+pub(crate) fn is_path(object: &Bound<'_, PyAny>) -> bool {
+    object.is_instance_of::<PyString>() || object.hasattr("__fspath__").unwrap_or(false)
 }
 
 /// Describes an argument for an error: its type, and the shape of an array.
@@ -147,7 +201,7 @@ fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Converts real numbers of any type to an array of float64. Complex numbers and texts are
+/// Converts real numbers of any type to an array of float64. Complex numbers and strings are
 /// refused, which numpy would convert.
 fn reals<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let array = object.py().import("numpy")?.call_method1("asarray", (object,))?;
@@ -174,12 +228,12 @@ impl Ranges<'_> {
     /// Returns the numbers.
     pub(crate) fn numbers(&self, name: &str) -> PyResult<Vec<f64>> {
         let wrong =
-            |got: String| bad_value(format!("{name}: expected a sequence of numbers, got {got}"));
+            |got: String| bad_value(format!("{name}: expected a row of numbers, got {got}"));
         let array = if let Ok(array) = self.0.cast::<PyArray1<f64>>() {
             array.clone()
         } else {
             let made = reals(&self.0).map_err(|error| {
-                PyTypeError::new_err(format!("{name}: expected a sequence of numbers ({error})"))
+                PyTypeError::new_err(format!("{name}: expected a row of numbers ({error})"))
             })?;
             made.cast_into::<PyArray1<f64>>()
                 .map_err(|error| wrong(described(&error.into_inner())))?

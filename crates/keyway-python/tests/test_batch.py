@@ -2,8 +2,10 @@
 
 import json
 import pathlib
+import pickle
 import subprocess
 import sys
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -116,13 +118,81 @@ def test_a_comparison_as_html(rooms: keyway.Map) -> None:
 def test_names_of_files_stay_as_they_are(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ValueError, match="cannot read .*a--seeds-b.toml: "):
         keyway.batch([tmp_path / "a--seeds-b.toml"], tmp_path / "out")
-    for wrong in ("jps", 3, [3]):
-        with pytest.raises(TypeError, match="expected a list of strings, got "):
-            keyway.compare(keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0), planners=wrong)  # type: ignore[arg-type]
+
+
+def test_a_wrong_list_is_named(tmp_path: pathlib.Path) -> None:
+    grid = keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0)
+    lists: list[tuple[Any, str]] = [("jps", "str: put it into a list"), (3, "int"), (["jps", 3], "int at index 1"), ({"jps": 1}, "dict")]
+    for wrong, got in lists:
+        for name in ("planners", "smoothers", "columns"):
+            arguments: dict[str, Any] = {name: wrong}
+            with pytest.raises(TypeError, match=f"^{name}: expected a list of strings, got {got}$"):
+                keyway.compare(grid, **arguments)
+    with pytest.raises(TypeError, match="^stacks: expected a list of strings, got str: put it into a list$"):
+        keyway.batch([tmp_path], tmp_path / "out", stacks="keyway")
+    for got, wrong in (("str: put it into a list", "a.toml"), ("int at index 0", [3]), ("int", 3)):
+        with pytest.raises(TypeError, match=f"^scenes: expected a list of paths and scenes, or a dictionary of scenes, got {got}$"):
+            keyway.batch(wrong, tmp_path / "out")  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match=f"^parts: expected a list of paths, got {got}$"):
+            keyway.merge(wrong, tmp_path / "out")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="names of parameters are strings, got int"):
+        keyway.plan(grid, (1, 1), (2, 2), parameters={1: 2})  # type: ignore[dict-item]
+    with pytest.raises(ValueError, match="`map`: expected a string, a number, a boolean, a list or a dictionary, got object"):
+        keyway.plan(grid, (1, 1), (2, 2), parameters={"map": object()})
+
+
+@pytest.mark.filterwarnings("ignore:a. nothing in it is random")
+def test_scenes_in_memory_give_the_same_files(
+    scenes: pathlib.Path, expected: dict[str, bytes], tmp_path: pathlib.Path
+) -> None:
+    def drive(given: Any, out: str) -> dict[str, bytes]:
+        keyway.batch(given, tmp_path / out, stacks=["key-point-fusion", "dwa-to-goal"], seeds=2)
+        return results(tmp_path / out)
+
+    grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    made = {
+        "a": keyway.Scene(grid, (1, 2), (3, 3)),
+        "b": keyway.Scene(grid, (1, 2), (4, 2), disturbances={"sensor": {"range_m": 0.02}}),
+    }
+    read = keyway.Scene.read(scenes / "b.toml")
+    assert drive(made, "named") == expected
+    assert drive([scenes / "a.toml", pickle.loads(pickle.dumps(read))], "mixed") == expected
+    assert drive({"a": scenes / "a.toml", "b": read}, "files") == expected
+    report = keyway.batch([scenes / "a.toml", made["b"]], tmp_path / "numbered", stacks=["dwa-to-goal"])
+    rows = [json.loads(line) for line in (tmp_path / "numbered" / "runs.jsonl").read_text().splitlines()]
+    assert [row["scene"] for row in rows] == ["a", "scene-1"] and report["runs"] == 2
+
+
+def test_scenes_need_names_of_their_own(scenes: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    read = keyway.Scene.read(scenes / "a.toml")
+    lists: list[list[Any]] = [[read, read.replace(seed=5)], [read, scenes / "a.toml"], [scenes, read]]
+    for given in lists:
+        with pytest.raises(ValueError, match="two scenes are named `a`; .*dictionary"):
+            keyway.batch(given, tmp_path / "out")
+    with pytest.raises(ValueError, match="scenes: the name of a scene must not be empty"):
+        keyway.batch({"": read}, tmp_path / "out")
+    with pytest.raises(TypeError, match="scenes: expected a Scene or a scene file as `a`, got int"):
+        keyway.batch({"a": 3}, tmp_path / "out")  # type: ignore[dict-item]
+    with pytest.raises(ValueError, match="scenes must name at least one scene"):
+        keyway.batch({}, tmp_path / "out")
+
+
+def test_records_of_scenes_in_memory_are_replayed(tmp_path: pathlib.Path) -> None:
+    values = np.zeros((40, 80), dtype=np.int8)
+    values[:3, :], values[38:, :40], values[38:, 40:] = 100, -1, 30
+    grid = keyway.Map.from_array(values, resolution=0.1, origin=(-1, 2), occupied_threshold=90, free_threshold=30)
+    out = tmp_path / "out"
+    with pytest.raises(ValueError, match="seeds must be a whole number"):
+        keyway.batch({"room": keyway.Scene(grid, (1, 4), (4, 4))}, out, keep="all", seeds=0)
+    assert not out.exists()
+    keyway.batch({"room": keyway.Scene(grid, (1, 4), (4, 4))}, out, keep="all")
+    (record,) = (out / "records").rglob("*.json*")
+    done = subprocess.run([*KEYWAY, "replay", str(record)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
 
 
 def test_what_cannot_be_compared_is_said(rooms: keyway.Map) -> None:
-    with pytest.raises(ValueError, match="planners: jps is given twice"):
+    with pytest.raises(ValueError, match="planners: jps is named twice"):
         keyway.compare(rooms, planners=["jps", "jps"])
     with pytest.raises(ValueError, match="no_planner|there is no field"):
         keyway.compare(rooms, parameters={"no_planner": {"a": 1}})

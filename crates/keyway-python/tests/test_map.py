@@ -4,6 +4,8 @@ import copy
 import multiprocessing
 import pathlib
 import pickle
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -96,7 +98,7 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path: pathlib.Path) -> None:
     (tmp_path / "bad.map").write_text("type octile\nheight 2\nwidth 2\nmap\n..\n")
     with pytest.raises(ValueError, match=r"bad\.map: "):
         keyway.Map.read(tmp_path / "bad.map")
-    with pytest.raises(ValueError, match=r"larger than the limit of 9 cells; .* with max_cells=\d+$"):
+    with pytest.raises(ValueError, match=r"larger than the limit of 9 cells; .* with keyway.Map.read\(path, max_cells=\d+\)$"):
         keyway.Map.read(SCENES / "rooms.map", max_cells=9)
     with pytest.raises(ValueError, match="no cells|at least one"):
         keyway.Map.from_array(np.zeros((0, 5), dtype=bool), resolution=1.0)
@@ -145,3 +147,41 @@ def test_maps_and_scenes_go_to_other_processes(house: keyway.Map, scene: keyway.
 def test_a_position_far_away_is_short() -> None:
     with pytest.raises(ValueError, match=r"positions\[0\] \(1e300, 1e0\) is outside"):
         keyway.Map.from_array(np.zeros((5, 5), dtype=bool), resolution=1.0).cells([(1e300, 1)])
+
+
+def test_a_path_stands_for_its_map(house: keyway.Map) -> None:
+    file = SCENES / "small_house.yaml"
+    ends = (-8.175, -2.825), (8.725, 0.875)
+    expected = keyway.plan(house, *ends, radius=0.2)
+    for path in (file, str(file)):
+        assert keyway.plan(path, *ends, radius=0.2).cost == expected.cost
+        (several,) = keyway.plan_many(path, [ends[0]], [ends[1]], radius=0.2)
+        assert isinstance(several, keyway.Plan) and several.cost == expected.cost
+        assert keyway.Planner(path, radius=0.2).plan(*ends).cost == expected.cost
+        navigator = keyway.Navigator(path)
+        assert navigator.map.digest == house.digest
+        compared = keyway.compare(path, planners=["jps"], smoothers=["none"], queries=3, times=False)
+        assert compared.rows == keyway.compare(house, planners=["jps"], smoothers=["none"], queries=3, times=False).rows
+        assert repr(keyway.Scene(path, *ends)) == repr(keyway.Scene(house, *ends))
+        free = keyway.Navigator(keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.05))
+        free.set_map(path)
+        assert free.map.digest == house.digest
+        free.edit_map(path)
+        free.set_masks(keep_out=path, slow=(path, 0.2))
+    with pytest.warns(UserWarning, match=r"small_house.png.*; set it with keyway.Map.read\(path, resolution=...\), or use"):
+        keyway.Navigator(SCENES / "small_house.png")
+
+
+def test_what_is_no_map_is_named() -> None:
+    with pytest.raises(FileNotFoundError, match="cannot read nowhere.yaml: there is no such file or folder"):
+        keyway.plan("nowhere.yaml", (1, 1), (2, 2))
+    calls: list[Callable[[Any], object]] = [
+        lambda wrong: keyway.plan(wrong, (1, 1), (2, 2)), keyway.Planner, keyway.Navigator, keyway.compare,
+        lambda wrong: keyway.Scene(wrong, (1, 1), (2, 2)),
+    ]
+    for call in calls:
+        for wrong, got in ((3, "int"), (None, "NoneType"), (np.zeros((2, 3)), r"an array of float64 of shape \(2, 3\)")):
+            with pytest.raises(TypeError, match=f"^expected a keyway.Map, or the path of a map file, got {got}"):
+                call(wrong)
+    with pytest.raises(TypeError, match=r"array .*: Map.from_array makes a map of an array"):
+        keyway.plan(np.zeros((2, 3), dtype=bool), (1, 1), (2, 2))  # type: ignore[arg-type]

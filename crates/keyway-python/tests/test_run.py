@@ -79,6 +79,15 @@ def test_headings_are_radians_and_those_of_files_degrees() -> None:
     trajectory = keyway.simulate(scene).trajectory
     assert trajectory["yaw_rad"][0] == math.pi / 2
     assert trajectory["yaw_rad"][-1] == pytest.approx(math.radians(30), abs=0.2)
+    run = keyway.simulate(scene)
+    assert run.start == [1, 2, math.pi / 2] and run.goal == pytest.approx([7, 2, math.radians(30)])
+    assert keyway.simulate(keyway.Scene(grid, (1, 2), (7, 2))).goal == [7, 2]
+    assert scene.start == [1, 2, math.pi / 2] and scene.goal == pytest.approx([7, 2, math.radians(30)])
+    for start, goal in (((1, 2, 90), (7, 2)), ((1, 2), (7, 2, -30))):
+        with pytest.warns(UserWarning, match="headings are in radians, and only in files in degrees"):
+            keyway.Scene(grid, start, goal)
+    with pytest.warns(UserWarning, match="goal: .*headings are in radians"):
+        bound_for(grid, (1, 1), (1, 2, 90))
     navigator = bound_for(grid, (1, 1), (1, 1, -math.pi / 2))
     assert navigator.goal == [1, 1, -math.pi / 2]
     assert next_step(navigator, (1, 1, 0), (0, 0), navigator.clear_scan, 0).omega < 0
@@ -291,3 +300,29 @@ def test_a_robot_does_not_stop_for_its_own_housing() -> None:
         if simulation.step(step.v, step.omega, 1e3 - cycle):
             break
     assert simulation.outcome == "reached"
+
+
+def test_a_path_stands_for_its_scene() -> None:
+    file = SCENES / "small_house.toml"
+    expected = keyway.simulate(keyway.Scene.read(file))
+    for path in (file, str(file)):
+        assert np.array_equal(keyway.simulate(path).trajectory, expected.trajectory)
+    (alone,) = keyway.simulate_team(file)
+    assert np.array_equal(alone.trajectory, expected.trajectory)
+    with pytest.raises(FileNotFoundError, match="cannot read nowhere.toml"):
+        keyway.simulate("nowhere.toml")
+    for wrong in (3, None, expected):
+        with pytest.raises(TypeError, match="^expected a keyway.Scene, or the path of a scene file, got "):
+            keyway.simulate(wrong)  # type: ignore[arg-type]
+
+
+def test_moving_obstacles_of_a_run_are_where_they_were() -> None:
+    grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    moving = [{"way_points": [[6.5, 1], [6.5, 3]], "speed_mps": 0.5, "radius_m": 0.25}]
+    run = keyway.simulate(keyway.Scene(grid, (1, 2), (4, 2), moving=moving))
+    (path,) = run.moving
+    assert path.dtype.names == ("t_s", "x_m", "y_m", "radius_m")
+    assert np.array_equal(path["t_s"], run.trajectory["t_s"])
+    # To and fro: 4 s for one way.
+    assert np.allclose(path["y_m"], 3 - np.abs(path["t_s"] % 8 - 4) / 2)
+    assert keyway.simulate(keyway.Scene(grid, (1, 2), (4, 2))).moving == []

@@ -2,7 +2,7 @@
 The compiled part of Keyway. Import `keyway` instead.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from keyway.typing import LaserScans, Plans, Progress
 from numpy import bool_, float64, int32, int8, void
 from numpy.typing import NDArray
@@ -202,7 +202,7 @@ class Navigator:
     >>> navigator
     <keyway.Navigator keyway: 2.000 m to go, 360 beams>
     """
-    def __new__(cls, /, grid: Map, robot: str | PathLike[str] | dict[str, Any] | None = None, stack: str = "keyway", parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, safe: bool = False, progress: Progress | None = None) -> Navigator: ...
+    def __new__(cls, /, grid: Map | str | PathLike[str], robot: str | PathLike[str] | dict[str, Any] | None = None, stack: str = "keyway", parameters: dict[str, Any] | None = None, as_published: bool = False, radius: float | None = None, safe: bool = False, progress: Progress | None = None) -> Navigator: ...
     def __reduce__(self, /) -> tuple[Any, tuple[bytes]]: ...
     def __repr__(self, /) -> str: ...
     def back_up(self, /, distance: float, allowance: float) -> None:
@@ -247,7 +247,7 @@ class Navigator:
         >>> navigator.relocate((1, 1, 0))
         >>> navigator.drive_on_heading(0.5, allowance=20)
         """
-    def edit_map(self, /, window: Map) -> None:
+    def edit_map(self, /, window: Map | str | PathLike[str]) -> None:
         """
         Replaces a part of the map by that of another one, cell by cell at the centres of the
         cells of `window`.
@@ -453,7 +453,7 @@ class Navigator:
         >>> round(navigator.remaining, 3)
         4.0
         """
-    def set_map(self, /, grid: Map) -> None:
+    def set_map(self, /, grid: Map | str | PathLike[str]) -> None:
         """
         Replaces the map, such as by one that has grown, or whose origin has moved. Sensed
         obstacles keep their positions in the world.
@@ -466,7 +466,7 @@ class Navigator:
         >>> navigator.set_map(keyway.Map.from_array(free, resolution=0.1, origin=(-2, -2)))
         >>> navigator.set_goal((-1, -1))
         """
-    def set_masks(self, /, keep_out: Map | None = None, slow: tuple[Map, float] | None = None) -> None:
+    def set_masks(self, /, keep_out: Map | str | PathLike[str] | None = None, slow: tuple[Map | str | PathLike[str], float] | None = None) -> None:
         """
         Keeps out of the occupied cells of one map, and limits the speed [m/s] on those of another
         one. They replace earlier masks. Their frames may differ from that of the navigator's map.
@@ -639,7 +639,7 @@ class Planner:
     >>> planner.plan((0.55, 0.55), (4.55, 0.55)).length
     4.0
     """
-    def __new__(cls, /, grid: Map, radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, progress: Progress | None = None) -> Planner: ...
+    def __new__(cls, /, grid: Map | str | PathLike[str], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, progress: Progress | None = None) -> Planner: ...
     def __repr__(self, /) -> str: ...
     def plan(self, /, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
         """
@@ -712,10 +712,27 @@ class Run:
     def _repr_png_(self, /) -> bytes: ...
     def _repr_svg_(self, /) -> str: ...
     @property
+    def goal(self, /) -> list[float]:
+        """
+        Goal of the robot (x, y) [m], or with a given heading (x, y, yaw) [m, m, rad].
+        """
+    @property
+    def map(self, /) -> Map:
+        """
+        The map that was known to the robot.
+        """
+    @property
     def metrics(self, /) -> dict[str, Any]:
         """
         Metrics of the run, with the names of `run` in `docs/reference/json.md`: `time_s`,
         `length_m`, `min_clearance_m` and more. It is empty if there was no route.
+        """
+    @property
+    def moving(self, /) -> list[NDArray[void]]:
+        """
+        The moving obstacles during the run: for each, a structured array with the fields `t_s`,
+        `x_m`, `y_m` and `radius_m`, all float64, at the times of `trajectory`. Where an obstacle
+        jumps, a row has a position of NaN.
         """
     @property
     def outcome(self, /) -> str:
@@ -737,6 +754,12 @@ class Run:
         """
         The first route after smoothing: a read-only array of float64 of shape (n, 2) [m]. A curve
         is approximated by chords. It is empty if there was no route.
+        """
+    @property
+    def start(self, /) -> list[float]:
+        """
+        Start of the robot (x, y) [m], or with a given heading (x, y, yaw) [m, m, rad]. In `report`
+        headings are in degrees.
         """
     @property
     def trajectory(self, /) -> NDArray[void]:
@@ -799,22 +822,22 @@ class Scene:
 
     For a map in memory, the arguments are those of a scene file, with the same names: `robot`,
     `stack`, `safe`, `via`, `seed`, `unknown`, `moving`, `random`, `rules`, `disturbances`.
-    `start` and `goal` are positions [m], or poses [m, m, rad]; in a scene file the heading is in
-    degrees. `Scene.read` reads a scene file.
+    `start` and `goal` are positions [m], or poses [m, m, rad]; only in scene files, and so in
+    `to_toml`, headings are in degrees. `Scene.read` reads a scene file.
 
     >>> import keyway, numpy as np
     >>> grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
     >>> keyway.Scene(grid, start=(1, 2), goal=(7, 2), unknown=[{"position": [4, 2.1], "radius_m": 0.3}])
     <keyway.Scene small with keyway, 1 unknown, 0 moving, seed 0>
     """
-    def __new__(cls, /, grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], **fields: "object") -> Scene: ...
-    def __reduce__(self, /) -> tuple[Any, tuple[str, Path, Map | None]]:
+    def __new__(cls, /, grid: Map | str | PathLike[str], start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], **fields: "object") -> Scene: ...
+    def __reduce__(self, /) -> tuple[Any, tuple[str, Path, Map | None, str | None]]:
         """
         Supports copying, pickling and sending scenes to other processes.
         """
     def __repr__(self, /) -> str: ...
     @staticmethod
-    def _restored(text: str, folder: str | PathLike[str], map: Map | None) -> Scene: ...
+    def _restored(text: str, folder: str | PathLike[str], map: Map | None, name: str | None) -> Scene: ...
     @staticmethod
     def from_toml(text: str, folder: str | PathLike[str] | None = None) -> Scene:
         """
@@ -826,9 +849,19 @@ class Scene:
         ValueError: a scene has either a `map` or a `[world]`, got neither
         """
     @property
+    def goal(self, /) -> list[float] | None:
+        """
+        Goal (x, y) [m], or with a heading (x, y, yaw) [m, m, rad]; `None` for several robots.
+        """
+    @property
     def is_random(self, /) -> bool:
         """
         True if the run depends on the seed.
+        """
+    @property
+    def name(self, /) -> str | None:
+        """
+        Name of the scene's file without `.toml`; `None` for a scene that was not read from a file.
         """
     @staticmethod
     def read(path: str | PathLike[str]) -> Scene:
@@ -864,6 +897,11 @@ class Scene:
         """
         Name of the stack.
         """
+    @property
+    def start(self, /) -> list[float] | None:
+        """
+        Start (x, y) [m], or with a heading (x, y, yaw) [m, m, rad]; `None` for several robots.
+        """
     def to_toml(self, /) -> str:
         """
         Returns the text of the scene file. A map in memory is called `array` there.
@@ -893,7 +931,7 @@ class Simulation:
     >>> simulation.outcome
     'reached'
     """
-    def __new__(cls, /, scene: Scene, progress: Progress | None = None) -> Simulation: ...
+    def __new__(cls, /, scene: Scene | str | PathLike[str], progress: Progress | None = None) -> Simulation: ...
     def __repr__(self, /) -> str: ...
     @property
     def cycle(self, /) -> float:
@@ -1011,19 +1049,24 @@ class Step:
         Message with the reason for `blocked`; otherwise `None`.
         """
 
-def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, disturbances: str | PathLike[str] | None = None, reached_by: str | None = None, safe: bool = False, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> dict[str, Any]:
+def batch(scenes: Sequence[str | PathLike[str] | Scene] | Mapping[str, str | PathLike[str] | Scene], out: str | PathLike[str], stacks: Sequence[str] | None = None, seeds: int = 1, jobs: int | None = None, shard: tuple[int, int] | None = None, keep: str | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, disturbances: str | PathLike[str] | None = None, reached_by: str | None = None, safe: bool = False, parameters: dict[str, Any] | None = None, progress: Progress | None = None) -> dict[str, Any]:
     """
     Drives scenes with stacks and seeds, as `keyway batch` does, and writes the same files, byte
     for byte, into the folder `out`.
 
-    `scenes` are scene files, or folders of them. `stacks` are names or files, or `["all"]`.
-    `seeds` is the number of seeds for each scene. `shard=(i, n)` runs only the i-th of n parts;
-    `keyway.merge` merges the parts. `jobs` is the number of threads. `keep` selects the runs that
-    get a full record: `"none"`, `"failures"` or `"all"`. `robot` and `disturbances` are names or
-    files. `reached_by` is the pose that counts as reaching a goal, `"truth"` or `"belief"`.
-    `safe` enables the stop rule for every stack. `parameters` override those of every stack, and
-    their `robot` table those of every robot. Finished runs in the folder are not repeated, so an
-    interrupted batch is resumed. `progress(done, expected)` is called meanwhile.
+    `scenes` is a list of scene files, folders of them, and objects of `keyway.Scene`. A file has
+    its own name in the results, without `.toml`, and so has a scene that was read from it; a scene
+    in memory is called `scene-0`, by its index in the list. Other names are the keys of a
+    dictionary of scenes and scene files.
+
+    `stacks` are names or files, or `["all"]`. `seeds` is the number of seeds for each scene.
+    `shard=(i, n)` runs only the i-th of n parts; `keyway.merge` merges the parts. `jobs` is the
+    number of threads. `keep` selects the runs that get a full record: `"none"`, `"failures"` or
+    `"all"`. `robot` and `disturbances` are names or files. `reached_by` is the pose that counts
+    as reaching a goal, `"truth"` or `"belief"`. `safe` enables the stop rule for every stack.
+    `parameters` override those of every stack, and their `robot` table those of every robot.
+    Finished runs in the folder are not repeated, so an interrupted batch is resumed.
+    `progress(done, expected)` is called meanwhile.
 
     Returns the report `keyway.batch/1` of `docs/reference/json.md`.
 
@@ -1033,7 +1076,7 @@ def batch(scenes: Sequence[str | PathLike[str]], out: str | PathLike[str], stack
     ValueError: cannot read nowhere.toml: there is no such file or folder
     """
 
-def compare(grid: Map, planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
+def compare(grid: Map | str | PathLike[str], planners: Sequence[str] | None = None, smoothers: Sequence[str] | None = None, queries: int = 10, seed: int = 0, repeat: int = 1, radius: float | None = None, robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, columns: Sequence[str] | None = None, times: bool = True, progress: Progress | None = None) -> Comparison:
     """
     Compares the paths of planners and smoothers on a map, with each other and with the shortest
     line, as `keyway compare` does.
@@ -1074,9 +1117,11 @@ def names(kind: str) -> list[str]:
     ['small', 'jackal', 'paper']
     """
 
-def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
+def plan(grid: Map | str | PathLike[str], start: Sequence[float] | NDArray[Any], goal: Sequence[float] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, budget: int | None = None, nearest_reachable: bool = False, progress: Progress | None = None) -> Plan:
     """
     Plans a path on a map from one position to another [m], and smooths it.
+
+    `grid` is a map, or the path of its file, which is then read at every call.
 
     `planner` and `smoother` are names of `keyway.names`. `radius` is the clearance of the path to
     every obstacle [m]; with `robot` it is the robot's inscribed radius instead. `parameters` are
@@ -1106,7 +1151,7 @@ def plan(grid: Map, start: Sequence[float] | NDArray[Any], goal: Sequence[float]
     10.0
     """
 
-def plan_many(grid: Map, starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, jobs: int | None = None, progress: Progress | None = None) -> Plans:
+def plan_many(grid: Map | str | PathLike[str], starts: Sequence[Sequence[float]] | NDArray[Any], goals: Sequence[Sequence[float]] | NDArray[Any], radius: float | None = None, planner: str = "jps", smoother: str = "none", robot: str | PathLike[str] | dict[str, Any] | None = None, parameters: dict[str, Any] | None = None, as_published: bool = False, jobs: int | None = None, progress: Progress | None = None) -> Plans:
     """
     Plans many paths on all cores: from `starts` to `goals`, arrays of shape (n, 2) [m].
 
@@ -1132,9 +1177,10 @@ def program(words: Sequence[str]) -> int:
     2
     """
 
-def simulate(scene: Scene, progress: Progress | None = None, times: bool = False) -> Run:
+def simulate(scene: Scene | str | PathLike[str], progress: Progress | None = None, times: bool = False) -> Run:
     """
-    Simulates the run of a scene. The same scene gives the same run, to the last digit.
+    Simulates the run of a scene. The same scene gives the same run, to the last digit. A scene may
+    be the path of its file.
 
     A start without a route, a collision and a timeout are outcomes, not exceptions.
     `progress(cycles, None)` is called meanwhile. With `times`, the times of decisions are
@@ -1148,7 +1194,7 @@ def simulate(scene: Scene, progress: Progress | None = None, times: bool = False
     ('reached', True)
     """
 
-def simulate_team(scene: Scene, progress: Progress | None = None) -> list[Run]:
+def simulate_team(scene: Scene | str | PathLike[str], progress: Progress | None = None) -> list[Run]:
     """
     Simulates the runs of all robots of a scene, which drive in one world at the same time.
     Returns one run per robot, in their order.

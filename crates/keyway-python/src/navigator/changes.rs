@@ -2,6 +2,7 @@
 
 use super::{Navigator, told_pose};
 use crate::errors::{bad_value, navigate_error};
+use crate::given_map::GivenMap;
 use crate::map::{Map, map_of_array};
 use crate::values::Numbers;
 use keyway::geometry::Velocity;
@@ -49,7 +50,7 @@ impl Navigator {
     /// >>> free = np.zeros((80, 80), dtype=bool)
     /// >>> navigator.set_map(keyway.Map.from_array(free, resolution=0.1, origin=(-2, -2)))
     /// >>> navigator.set_goal((-1, -1))
-    fn set_map(&self, py: Python<'_>, grid: &Map) -> PyResult<()> {
+    fn set_map(&self, py: Python<'_>, grid: GivenMap) -> PyResult<()> {
         let map = Arc::clone(&grid.grid);
         py.detach(|| self.lock().navigator.set_map(&map)).map_err(|error| navigate_error(&error))
     }
@@ -64,7 +65,7 @@ impl Navigator {
     /// >>> navigator.edit_map(keyway.Map.from_array(wall, resolution=0.1, origin=(2, 1)))
     /// >>> navigator.map
     /// <keyway.Map 40 x 40 cells of 0.1 m from (0, 0), 10 occupied, 0 unknown>
-    fn edit_map(&self, py: Python<'_>, window: &Map) {
+    fn edit_map(&self, py: Python<'_>, window: GivenMap) {
         let window = Arc::clone(&window.grid);
         py.detach(|| {
             let navigator = &mut self.lock().navigator;
@@ -107,8 +108,8 @@ impl Navigator {
     fn set_masks(
         &self,
         py: Python<'_>,
-        keep_out: Option<PyRef<'_, Map>>,
-        slow: Option<(PyRef<'_, Map>, f64)>,
+        keep_out: Option<GivenMap>,
+        slow: Option<(GivenMap, f64)>,
     ) -> PyResult<()> {
         let keep_out = keep_out.map(|map| Arc::clone(&map.grid));
         let speed = slow.map(|(map, speed_mps)| {

@@ -6,13 +6,13 @@ mod tasks;
 
 use crate::arrays::{Floats2, Json, json, of_points};
 use crate::errors::{bad_value, config_file_error, navigate_error};
-use crate::map::Map;
+use crate::given_map::GivenMap;
 use crate::measured::Measured;
 use crate::parameters::{Parameters, RobotName, robot};
 use crate::points::AllPoints;
 use crate::scan::LaserScans;
 use crate::step::Step;
-use crate::values::Numbers;
+use crate::values::{Numbers, place};
 use crate::watched::{Progress, watched};
 use keyway::files::{StackBase, find_stack};
 use keyway::geometry::{Pose, Velocity};
@@ -82,7 +82,7 @@ impl Navigator {
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn new(
         py: Python<'_>,
-        grid: &Map,
+        grid: GivenMap,
         robot: Option<RobotName>,
         stack: &str,
         parameters: Option<Parameters>,
@@ -196,7 +196,7 @@ impl Navigator {
     #[getter]
     fn goal(&self, py: Python<'_>) -> Option<Vec<f64>> {
         let Goal { position, heading_rad } = py.detach(|| self.lock().navigator.goal())?;
-        Some([Some(position.x), Some(position.y), heading_rad].into_iter().flatten().collect())
+        Some(place(position, heading_rad))
     }
 
     /// The current route: a read-only array of float64 of shape (n, 2) [m]; empty without a goal.

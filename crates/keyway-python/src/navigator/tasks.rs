@@ -19,7 +19,7 @@ impl Navigator {
         goal: &Numbers,
         progress: Option<&Progress>,
     ) -> PyResult<()> {
-        let (position, heading_rad) = goal.place("goal")?;
+        let (position, heading_rad) = goal.place(py, "goal")?;
         let goal = Goal { position, heading_rad };
         let job = py.detach(|| self.lock().navigator.plan_job(via, goal));
         let job = job.map_err(|error| navigate_error(&error))?;
