@@ -1,16 +1,22 @@
 //! A simulated run that Python code drives.
 
+use crate::arrays::{Floats2, Mask, of_points, of_rows};
 use crate::errors::bad_value;
+use crate::map::Map;
 use crate::run::run_error;
 use crate::scan::Scan;
 use crate::scene::{Scene, SceneOrFile};
 use crate::watched::{Progress, watched};
-use keyway::geometry::{Point, Pose, Velocity};
-use keyway::robot::Limits;
+use keyway::geometry::{Disc, Point, Pose, Velocity};
+use keyway::map::{CellState, OccupancyGrid};
+use keyway::navigate::Goal;
+use keyway::robot::{Footprint, Limits, Robot};
 use keyway_sim::episode::{Episode, EpisodeRobot};
-use keyway_sim::sim::{Action, Arrival, Control, Outcome, Stepper};
+use keyway_sim::report::MapSource;
+use keyway_sim::sim::{Action, Arrival, Control, ElusiveShape, Outcome, Stepper};
 use pyo3::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The world of a scene, driven by the caller: one control cycle per call, as in reinforcement
 /// learning.
@@ -30,10 +36,10 @@ use std::sync::{Mutex, PoisonError};
 #[pyclass(frozen, module = "keyway")]
 pub(crate) struct Simulation {
     stepper: Mutex<Stepper>,
-    goal: Point,
-    cycle_s: f64,
-    limits: Limits,
-    sensors: usize,
+    grid: Arc<OccupancyGrid>,
+    source: MapSource,
+    goal: Goal,
+    robot: Robot,
     range_m: f64,
 }
 
@@ -41,6 +47,14 @@ impl Simulation {
     fn lock(&self) -> std::sync::MutexGuard<'_, Stepper> {
         self.stepper.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Number of chords of the outline of a circle.
+const CHORDS: u32 = 32;
+
+fn of_discs(py: Python<'_>, discs: &[Disc]) -> Floats2 {
+    let row = |disc: &Disc| [disc.centre.x, disc.centre.y, disc.radius_m];
+    Floats2(of_rows(py, discs.iter().map(row), discs.len()))
 }
 
 fn name(outcome: Outcome) -> &'static str {
@@ -68,11 +82,11 @@ impl Simulation {
         let EpisodeRobot { goal, robot, .. } = episode.robots.swap_remove(0);
         Ok(Self {
             stepper: Mutex::new(stepper),
-            goal: goal.position,
-            cycle_s: robot.cycle_s,
-            limits: robot.limits,
-            sensors: robot.sensors.len(),
+            grid: Arc::new(episode.known),
+            source: episode.source,
+            goal,
             range_m: robot.sensors.iter().map(|sensor| sensor.range_m).fold(0.0, f64::max),
+            robot,
         })
     }
 
@@ -98,7 +112,7 @@ impl Simulation {
     ) -> PyResult<Option<&'static str>> {
         let ended = py.detach(|| {
             let mut stepper = self.lock();
-            let straight_m = stepper.state().pose.point().distance(self.goal);
+            let straight_m = stepper.state().pose.point().distance(self.goal.position);
             let remaining_m = remaining.unwrap_or(straight_m);
             let action = Action::Drive(Velocity::new(v, omega));
             stepper.step(&Control { action, remaining_m, route: 0, turn_left_rad: 0.0 })
@@ -147,7 +161,7 @@ impl Simulation {
     #[getter]
     fn scans(&self) -> Vec<Option<Scan>> {
         let stepper = self.lock();
-        let mut scans: Vec<Option<Scan>> = (0..self.sensors).map(|_| None).collect();
+        let mut scans: Vec<Option<Scan>> = (0..self.robot.sensors.len()).map(|_| None).collect();
         for one in stepper.scans() {
             scans[one.sensor] = Some(Scan::new(one.scan.owned(), Some(one.stamp_s)));
         }
@@ -157,19 +171,109 @@ impl Simulation {
     /// Position of the goal (x, y) [m].
     #[getter]
     fn goal(&self) -> (f64, f64) {
-        (self.goal.x, self.goal.y)
+        let Point { x, y } = self.goal.position;
+        (x, y)
+    }
+
+    /// Heading that the robot is to have at the goal [rad]; `None` if any will do. The run ends at
+    /// the goal with any heading.
+    #[getter]
+    fn goal_heading(&self) -> Option<f64> {
+        self.goal.heading_rad
+    }
+
+    /// The map that the robot knows.
+    #[getter]
+    fn map(&self) -> Map {
+        Map::shared(Arc::clone(&self.grid), self.source.clone())
+    }
+
+    /// Mask of the cells that are occupied and that the map shows as free: a new array of bool of
+    /// shape (rows, columns).
+    #[getter]
+    fn hidden(&self, py: Python<'_>) -> PyResult<Mask> {
+        let squares = self.lock().world().world().squares().clone();
+        let is_free = |cell| self.grid.state(cell) == Some(CellState::Free);
+        self.map().mask(py, |cell| squares.get(cell) && is_free(cell))
+    }
+
+    /// Static obstacles that are not on the map and are present now: a read-only array of float64
+    /// of shape (n, 3) with the centre (x, y) and the radius of each [m].
+    #[getter]
+    fn obstacles(&self, py: Python<'_>) -> Floats2 {
+        let stepper = self.lock();
+        let world = stepper.world();
+        let elusive = world.elusive().filter_map(|obstacle| match obstacle.shape() {
+            ElusiveShape::Disc(disc) => Some(*disc),
+            _ => None,
+        });
+        let discs: Vec<Disc> = world.world().discs().iter().copied().chain(elusive).collect();
+        of_discs(py, &discs)
+    }
+
+    /// Vertices of static obstacles that are not on the map and are present now: for each, a
+    /// read-only array of float64 of shape (n, 2) [m].
+    #[getter]
+    fn polygons(&self, py: Python<'_>) -> Vec<Floats2> {
+        let stepper = self.lock();
+        let world = stepper.world();
+        let elusive = world.elusive().filter_map(|obstacle| match obstacle.shape() {
+            ElusiveShape::Polygon(polygon) => Some(polygon),
+            _ => None,
+        });
+        let all = world.world().polygons().iter().chain(elusive);
+        all.map(|polygon| Floats2(of_points(py, polygon.vertices()))).collect()
+    }
+
+    /// Moving obstacles at this time: a read-only array of float64 of shape (n, 3) with the centre
+    /// (x, y) and the radius of each [m].
+    #[getter]
+    fn moving(&self, py: Python<'_>) -> Floats2 {
+        let stepper = self.lock();
+        let world = stepper.world();
+        let standing = world.world().discs().len();
+        let moving: Vec<Disc> = world.discs().skip(standing).collect();
+        of_discs(py, &moving)
+    }
+
+    /// True pose of the robot (x, y, theta) [m, m, rad].
+    #[getter]
+    fn true_pose(&self) -> (f64, f64, f64) {
+        let Pose { x, y, theta } = self.lock().state().pose;
+        (x, y, theta)
+    }
+
+    /// Outline of the robot at its true pose: a read-only array of float64 of shape (n, 2) [m]. A
+    /// circle is approximated by chords.
+    #[getter]
+    fn outline(&self, py: Python<'_>) -> Floats2 {
+        let pose = self.lock().state().pose;
+        let vertices: Vec<Point> = match &self.robot.footprint {
+            Footprint::Polygon(polygon) => polygon.vertices().to_vec(),
+            Footprint::Circle(_) => {
+                let radius_m = self.robot.footprint.inscribed_radius_m();
+                let on_circle = |i: u32| {
+                    let angle_rad = TAU * f64::from(i) / f64::from(CHORDS);
+                    Point::new(angle_rad.cos(), angle_rad.sin()) * radius_m
+                };
+                (0..CHORDS).map(on_circle).collect()
+            }
+        };
+        let outline: Vec<Point> =
+            vertices.into_iter().map(|vertex| pose.world_from_body(vertex)).collect();
+        Floats2(of_points(py, &outline))
     }
 
     /// Duration of a step [s].
     #[getter]
     fn cycle(&self) -> f64 {
-        self.cycle_s
+        self.robot.cycle_s
     }
 
     /// Lowest and highest velocity of the robot: (v, omega) of each [m/s, rad/s].
     #[getter]
     fn limits(&self) -> ((f64, f64), (f64, f64)) {
-        let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.limits;
+        let Limits { v_min_mps, v_max_mps, omega_max_radps, .. } = self.robot.limits;
         ((v_min_mps, -omega_max_radps), (v_max_mps, omega_max_radps))
     }
 

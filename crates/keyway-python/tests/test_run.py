@@ -83,6 +83,7 @@ def test_headings_are_radians_and_those_of_files_degrees() -> None:
     assert run.start == [1, 2, math.pi / 2] and run.goal == pytest.approx([7, 2, math.radians(30)])
     assert keyway.simulate(keyway.Scene(grid, (1, 2), (7, 2))).goal == [7, 2]
     assert scene.start == [1, 2, math.pi / 2] and scene.goal == pytest.approx([7, 2, math.radians(30)])
+    assert keyway.Simulation(scene).goal_heading == pytest.approx(math.radians(30))
     for start, goal in (((1, 2, 90), (7, 2)), ((1, 2), (7, 2, -30))):
         with pytest.warns(UserWarning, match="headings are in radians, and only in files in degrees"):
             keyway.Scene(grid, start, goal)
@@ -307,6 +308,7 @@ def test_a_path_stands_for_its_scene() -> None:
     expected = keyway.simulate(keyway.Scene.read(file))
     for path in (file, str(file)):
         assert np.array_equal(keyway.simulate(path).trajectory, expected.trajectory)
+        assert keyway.Simulation(path).map.digest == expected.map.digest
     (alone,) = keyway.simulate_team(file)
     assert np.array_equal(alone.trajectory, expected.trajectory)
     with pytest.raises(FileNotFoundError, match="cannot read nowhere.toml"):
@@ -314,6 +316,36 @@ def test_a_path_stands_for_its_scene() -> None:
     for wrong in (3, None, expected):
         with pytest.raises(TypeError, match="^expected a keyway.Scene, or the path of a scene file, got "):
             keyway.simulate(wrong)  # type: ignore[arg-type]
+
+
+def test_a_simulation_shows_its_world() -> None:
+    values = np.zeros((40, 80), dtype=np.int8)
+    values[:2], values[38:] = 100, -1
+    grid = keyway.Map.from_array(values, resolution=0.1)
+    scene = keyway.Scene(
+        grid, (1, 2, 0), (7, 2, math.pi / 2),
+        unknown=[
+            {"position": [4, 2.1], "radius_m": 0.3}, {"position": [4, 3], "radius_m": 0.1, "from_s": 0.5},
+            {"vertices_m": [[5, 1], [5.6, 1], [5.2, 1.4]]}, {"cells": [[20, 30], [21, 31]]},
+        ],
+        moving=[{"way_points": [[6.5, 1], [6.5, 3]], "speed_mps": 0.5, "radius_m": 0.25}],
+        disturbances={"localisation": {"position_m": 0.05}},
+    )
+    simulation = keyway.Simulation(scene)
+    assert simulation.obstacles.tolist() == [[4, 2.1, 0.3]] and simulation.moving.tolist() == [[6.5, 1, 0.25]]
+    assert [polygon.tolist() for polygon in simulation.polygons] == [[[5, 1], [5.6, 1], [5.2, 1.4]]]
+    # Unknown space is an obstacle, but not a hidden one.
+    assert np.argwhere(simulation.hidden).tolist() == [[30, 20], [31, 21]]
+    assert np.array_equal(simulation.map.occupancy, grid.occupancy)
+    for _ in range(10):
+        simulation.step(0.5, 0.0)
+    assert simulation.obstacles.tolist() == [[4, 2.1, 0.3], [4, 3, 0.1]]
+    assert simulation.moving[0].tolist() == pytest.approx([6.5, 1.5, 0.25])
+    x, y, theta = simulation.true_pose
+    assert simulation.pose != simulation.true_pose and math.dist(simulation.pose[:2], (x, y)) < 0.5
+    assert np.hypot(*(simulation.outline - (x, y)).T) == pytest.approx(np.full(len(simulation.outline), 0.18), abs=0.1)
+    turned = keyway.Simulation(scene.replace(robot="jackal")).outline
+    assert turned.shape == (4, 2) and turned.mean(axis=0) == pytest.approx((1, 2), abs=0.05)
 
 
 def test_moving_obstacles_of_a_run_are_where_they_were() -> None:

@@ -944,15 +944,56 @@ class Simulation:
         Position of the goal (x, y) [m].
         """
     @property
+    def goal_heading(self, /) -> float | None:
+        """
+        Heading that the robot is to have at the goal [rad]; `None` if any will do. The run ends at
+        the goal with any heading.
+        """
+    @property
+    def hidden(self, /) -> NDArray[bool_]:
+        """
+        Mask of the cells that are occupied and that the map shows as free: a new array of bool of
+        shape (rows, columns).
+        """
+    @property
     def limits(self, /) -> tuple[tuple[float, float], tuple[float, float]]:
         """
         Lowest and highest velocity of the robot: (v, omega) of each [m/s, rad/s].
+        """
+    @property
+    def map(self, /) -> Map:
+        """
+        The map that the robot knows.
+        """
+    @property
+    def moving(self, /) -> NDArray[float64]:
+        """
+        Moving obstacles at this time: a read-only array of float64 of shape (n, 3) with the centre
+        (x, y) and the radius of each [m].
+        """
+    @property
+    def obstacles(self, /) -> NDArray[float64]:
+        """
+        Static obstacles that are not on the map and are present now: a read-only array of float64
+        of shape (n, 3) with the centre (x, y) and the radius of each [m].
         """
     @property
     def outcome(self, /) -> str | None:
         """
         Outcome of the run, `reached`, `collided`, `timeout` or `stuck`; `None` while it is
         running.
+        """
+    @property
+    def outline(self, /) -> NDArray[float64]:
+        """
+        Outline of the robot at its true pose: a read-only array of float64 of shape (n, 2) [m]. A
+        circle is approximated by chords.
+        """
+    @property
+    def polygons(self, /) -> list[NDArray[float64]]:
+        """
+        Vertices of static obstacles that are not on the map and are present now: for each, a
+        read-only array of float64 of shape (n, 2) [m].
         """
     @property
     def pose(self, /) -> tuple[float, float, float]:
@@ -995,6 +1036,11 @@ class Simulation:
         >>> simulation = keyway.Simulation(keyway.Scene(grid, (1, 2, 0), (7, 2)))
         >>> simulation.step(0.5, 0.0) is None, round(simulation.velocity[0], 3)
         (True, 0.05)
+        """
+    @property
+    def true_pose(self, /) -> tuple[float, float, float]:
+        """
+        True pose of the robot (x, y, theta) [m, m, rad].
         """
     @property
     def velocity(self, /) -> tuple[float, float]:

@@ -4,6 +4,7 @@ use super::drive::{check, command};
 use super::fleet::{Entrant, Fleet};
 use super::{
     Control, Disturbances, Outcome, Participant, RobotState, Run, RunRules, SimError, World,
+    WorldAt,
 };
 use keyway::geometry::{Point, Pose};
 use keyway::robot::Robot;
@@ -92,6 +93,11 @@ impl Stepper {
         self.fleet.state(0)
     }
 
+    /// The world at the end of the last cycle.
+    pub fn world(&self) -> WorldAt<'_> {
+        self.fleet.world()
+    }
+
     /// Drives one cycle. Does nothing after the run has ended.
     ///
     /// # Errors
@@ -167,6 +173,7 @@ mod tests {
             run.step(&control).unwrap();
         }
         assert!(expected.cycles > 20, "{:?}", expected.outcome);
+        assert_eq!(run.world().discs().count(), 1);
         assert_eq!(Some(run.told().pose), expected.samples.last().map(|sample| sample.pose));
         assert_eq!(run.into_run(), Some(expected));
     }

@@ -8,7 +8,7 @@ use super::participant::{Action, Control, Participant};
 use super::rules::Arrival;
 use super::social_force::Body;
 use super::sweep::Sweep;
-use super::{Disturbances, Outcome, RobotState, Run, RunRules, World};
+use super::{Disturbances, Outcome, RobotState, Run, RunRules, World, WorldAt};
 use drive::{Clearances, Drive, Sensor};
 use keyway::geometry::{Point, Pose, Velocity};
 use keyway::robot::Robot;
@@ -128,6 +128,11 @@ impl<'a> Fleet<'a> {
     /// Scans that a robot's controller gets in this cycle.
     pub(super) fn scans(&self, index: usize) -> Vec<SensorScan<'_>> {
         self.drives[index].scans()
+    }
+
+    /// The world at the end of the last cycle.
+    pub(super) fn world(&self) -> WorldAt<'_> {
+        self.world.at(self.cycle as f64 * self.cycle_s)
     }
 
     /// State that was last reported to a robot, at the beginning of a cycle.
