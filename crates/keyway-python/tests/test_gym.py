@@ -107,6 +107,13 @@ def test_a_window_is_drawn_at_every_step(scene: keyway.Scene, monkeypatch: pytes
     for _ in range(3):
         env.step(np.array([0.5, 0.0], dtype=np.float32))
     assert len(drawn) == 3 and env.render() is None and len(drawn) == 4
+    # With a window, each step takes as long as in reality.
+    shown: list[object] = []
+    monkeypatch.setattr(env._window, "_is_shown", True)
+    monkeypatch.setattr(plt, "show", lambda block: shown.append(block))
+    monkeypatch.setattr(plt.figure(number).canvas, "start_event_loop", shown.append)
+    env.step(np.array([0.5, 0.0], dtype=np.float32))
+    assert shown == [False, 0.1]
     # Whoever closes the window goes on without.
     plt.close(number)
     env.step(np.array([0.5, 0.0], dtype=np.float32))

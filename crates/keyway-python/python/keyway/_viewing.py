@@ -20,8 +20,8 @@ __all__ = ["Picture", "Window"]
 #: Length of the longer side [px].
 _SIDE = 640
 _DPI = 100
-#: Names of backends with windows of their own in a notebook or a browser.
-_IN_BROWSERS = ("nbagg", "webagg", "ipympl")
+#: Names of backends with windows of their own in a notebook.
+_IN_NOTEBOOKS = ("nbagg", "ipympl")
 
 
 class Picture:
@@ -97,7 +97,7 @@ class Window:
         self._figure = plt.figure(dpi=_DPI)
         backend = matplotlib.get_backend().lower()
         has_window = getattr(type(self._figure.canvas), "required_interactive_framework", None) is not None
-        self._is_shown = has_window or any(name in backend for name in _IN_BROWSERS)
+        self._is_shown = has_window or any(name in backend for name in _IN_NOTEBOOKS)
         if not self._is_shown:
             text = f"the backend `{backend}` of matplotlib opens no window; choose another with matplotlib.use, or use rgb_array"
             warnings.warn(text, UserWarning, stacklevel=4)
