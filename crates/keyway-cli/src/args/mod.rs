@@ -272,7 +272,7 @@ Examples:
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --via -6,-2.6 --goal -3.6,-0.6,90
   keyway navigate keyway-demo/small_house.yaml --start -8.175,-2.825 --goal -3.6,-0.6 \
 --moving -6,-3,0.2,0,0.3 --moving -5,-2,0.2,0.4:-5,0 --safe
-  keyway navigate --scene keyway-demo/small_house.toml --out run --fan 12 --explain why.jsonl --animate drive.gif"
+  keyway navigate --scene keyway-demo/small_house.toml --out run --fan 16.5 --explain why.jsonl --animate drive.gif"
 )]
 pub(crate) struct NavigateArgs {
     /// Map: ROS map (.yaml), MovingAI (.map) or image (.png, .pgm)
