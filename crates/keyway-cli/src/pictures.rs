@@ -101,6 +101,8 @@ pub(crate) struct DrivenPicture<'a> {
     /// Obstacles that the robot detoured around.
     pub(crate) walked: &'a [Disc],
     pub(crate) points: &'a [TrajectoryPoint],
+    /// Number of routes that the robot searched.
+    pub(crate) routes: u32,
     /// Reason why the run ended before its goal; `None` if it was reached.
     pub(crate) ended_by: Option<&'static str>,
 }
@@ -122,13 +124,20 @@ impl RunPicture<'_> {
             .with(StartMark(start))
             .with(goal);
         if let Some(driven) = &self.driven {
+            // Later routes are not drawn; the reader should know that there were some.
+            let label = |name: &str| match driven.routes {
+                0 | 1 => name.to_owned(),
+                all => format!("{name}, first of {all}"),
+            };
             picture = picture
                 .with(CellTint::sensed(driven.sensed))
                 .with(WalkedGround(driven.walked))
-                .with(PathLine::planned(driven.line))
+                .with(PathLine::planned(driven.line).label(label("planned path")))
                 .with(Points::key_points(driven.key_points))
                 .with(DrivenPath::new(driven.points).v_max_mps(robot.limits.v_max_mps))
-                .with(PathLine::smoothed(driven.smoothed).over_driven())
+                .with(
+                    PathLine::smoothed(driven.smoothed).label(label("smoothed path")).over_driven(),
+                )
                 .with(Footprints::new(driven.points, &robot.footprint));
             if let (Some(label), Some(end)) = (driven.ended_by, driven.points.last()) {
                 picture = picture.with(EndMark { point: end.pose.point(), label });

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
     let names = BUNDLED.iter().map(|(name, _)| *name).chain(written(&driven));
     let files: Vec<String> = names.map(|name| out.path(name).display().to_string()).collect();
     write_files(&episode, &driven, &files, &mut out)?;
-    let open = out.path("map.png");
+    let (open, scene) = (out.path("map.png"), out.path(SCENE));
     out.finish()?;
     match args.format {
         Format::Json => crate::json::print(&WithFiles { report: &driven.report, files: &files })?,
@@ -42,7 +42,12 @@ pub(crate) fn run(args: &DemoArgs) -> Result<Done, CliError> {
             print("A robot crosses a house, around an obstacle that is not on its map.\n")?;
             print(&table(&episode, &driven))?;
             print_files(&files)?;
-            print(&format!("\nOpen {} to see the trajectory.", open.display()))?;
+            print(&format!(
+                "\nOpen {} to see the trajectory. Put something else in the robot's way:\n\
+                 keyway navigate --scene {} --obstacle 3,-0.3,0.4 --out run",
+                open.display(),
+                scene.display()
+            ))?;
         }
     }
     Ok(Done::when(driven.report.outcome == EpisodeOutcome::Reached))

@@ -207,7 +207,9 @@ fn a_run_that_does_not_reach_its_goal_says_why() {
     assert_eq!(collided["outcome"], "collided");
     assert!(collided["reason"].as_str().unwrap().starts_with("touched unknown obstacle 0"));
     // The picture marks the end: the letter there and in the legend, and what it means.
-    for (line, label) in [(inside, ">contact<"), (format!("{SHORT} --time-limit 1"), ">time limit<")] {
+    for (line, label) in
+        [(inside, ">contact<"), (format!("{SHORT} --time-limit 1"), ">time limit<")]
+    {
         let line = line.replace(" --format json", "");
         keyway(folder.path(), &format!("{line} --out out")).expect_code(1);
         let svg = read(&folder, "out/map.svg");

@@ -186,6 +186,7 @@ pub(crate) fn write_files(
             sensed,
             walked,
             points: &points,
+            routes: report.run.as_ref().map_or(0, |run| run.routes_planned),
             ended_by: ended_by(report.outcome),
         }),
     };
