@@ -1,5 +1,6 @@
 """The environment of gymnasium: its checker passes, and a seed is a world."""
 
+import pathlib
 import warnings
 from typing import Any
 
@@ -188,6 +189,26 @@ def test_what_an_environment_refuses(scene: keyway.Scene) -> None:
     for action in ([0.1], np.zeros((2, 2)), None, [0.1, 0.2, 0.3]):
         with pytest.raises(ValueError, match=r"action: expected \(v, omega\), got an array of shape"):
             env.step(action)  # type: ignore[arg-type]
+
+
+def test_scenes_are_given_or_read(scene: keyway.Scene, tmp_path: pathlib.Path) -> None:
+    grid = keyway.Map.from_array(np.zeros((40, 80), dtype=bool), resolution=0.1)
+    grid.write(tmp_path / "empty.map")
+    (tmp_path / "scene.toml").write_text('version = 2\nmap = "empty.map"\nstart = [5.5, 5.5]\ngoal = [15.5, 5.5]\n')
+    for given in (tmp_path / "scene.toml", str(tmp_path / "scene.toml"), [tmp_path / "scene.toml"]):
+        assert keyway.gym.Drive(given).reset(seed=0)[0]["goal"][0] == pytest.approx(10.0)
+    for wrong, got in ((3, "int"), (grid, "Map"), ([scene, None], "NoneType")):
+        with pytest.raises(TypeError, match=f"scenes: expected a Scene, a path of a scene file, or a list of them, got {got}"):
+            keyway.gym.Drive(wrong)  # type: ignore[arg-type]
+
+
+def test_an_environment_is_reset_first(scene: keyway.Scene) -> None:
+    env = keyway.gym.Drive(scene)
+    with pytest.raises(gymnasium.error.ResetNeeded, match="call reset"):
+        env.step(np.zeros(2, dtype=np.float32))
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match="action: expected finite numbers"):
+        env.step(np.array([np.nan, 0.0], dtype=np.float32))
 
 
 def test_environments_run_in_other_processes(scene: keyway.Scene) -> None:

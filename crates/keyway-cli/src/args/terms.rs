@@ -20,7 +20,7 @@ Each row against the first one, on the same queries:
   effect      rank-biserial correlation, from -1 (the path is always shorter) to 1 (always longer)
   p           probability of such differences by chance: of lengths by Wilcoxon's signed-rank test, of solved
               queries by McNemar's exact test, both corrected for the number of rows by Holm's method
-CSV, LaTeX and JSON have more columns: `--out DIR`, `--format json`.";
+CSV and JSON have more columns: `--out DIR`, `--format json`; `--columns` selects those of LaTeX.";
 
 /// Columns of `keyway bench grid`.
 pub(crate) const GRID_TERMS: &str = "\

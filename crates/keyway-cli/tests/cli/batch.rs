@@ -119,10 +119,25 @@ fn nothing_finished_is_lost_or_made_again() {
     assert_eq!(times.matches("4321.0").count(), 5, "{times}");
     assert!(!folder.path().join("torn/journal.jsonl").exists());
     // A scene that has changed is driven again; the others are not.
-    write(&folder, "scenes/more.toml", &HALL.replace("seed = 5", "seed = 11"));
+    let more = read(&folder, "scenes/more.toml");
+    write(&folder, "scenes/more.toml", &more.replace("[0.1, 0.2]", "[0.1, 0.19]"));
     batch("torn");
     assert_eq!(read(&folder, "torn/times.jsonl").matches("4321.0").count(), 4);
     assert_ne!(results(&folder, "torn"), whole);
+    // Fewer runs, or others, would take the place of those that are there.
+    let torn = results(&folder, "torn");
+    for fewer in ["--seeds 1", "--seeds 2 --stacks astar-follow"] {
+        let line = format!("batch scenes {fewer} --out torn --format json");
+        let refused = keyway(folder.path(), &line).expect_code(2).json();
+        assert_eq!((&refused["field"], &refused["kind"]), (&json!("--out"), &json!("output")));
+        let message = refused["message"].as_str().unwrap();
+        assert!(message.contains("torn holds runs that this batch does not have"), "{message}");
+        assert_eq!(results(&folder, "torn"), torn);
+    }
+    // More seeds are added to them.
+    keyway(folder.path(), &format!("{} --out torn", BATCH.replace("--seeds 2", "--seeds 3")))
+        .expect_code(0);
+    assert_eq!(read(&folder, "torn/times.jsonl").matches("4321.0").count(), 4);
 }
 
 /// The same worlds with another robot and other disturbances, compared with single runs.
@@ -239,6 +254,8 @@ fn two_batches_at_once_need_two_folders() {
     child.wait().unwrap();
     let known = finished();
     assert!(known > 0);
+    // The short batch would lack some of its runs.
+    std::fs::remove_file(&journal).unwrap();
     let short = line.replace("--seeds 1000", "--seeds 2");
     keyway(folder.path(), &short).expect_code(0);
     assert_eq!(read(&folder, "both/runs.jsonl").lines().count(), 4);
@@ -372,9 +389,9 @@ fn parts_are_put_together_when_all_are_there() {
         message.contains("part-1: other parts of the same batch are missing: 3/3;"),
         "{message}"
     );
-    run("batch scenes/more.toml --stacks rrt-follow --out late").expect_code(0);
-    let message = refused("other late --out no");
-    assert!(message.contains("has different inputs in other and late"), "{message}");
+    run("batch scenes/more.toml --stacks rrt-follow --out later").expect_code(0);
+    let message = refused("other later --out no");
+    assert!(message.contains("has different inputs in other and later"), "{message}");
     assert!(!folder.path().join("no").exists());
     std::fs::remove_dir_all(folder.path().join("scenes")).unwrap();
     run("batch merge part-3 part-1 part-2 --out whole").expect_code(0);
@@ -460,12 +477,16 @@ fn plots_show_what_there_is() {
     // The two stacks drive in the same worlds.
     assert_eq!(rows[0]["occupied_share"], rows[2]["occupied_share"]);
     assert_ne!(rows[0]["occupied_share"], rows[1]["occupied_share"]);
-    // One world.
-    batch("batch scenes/hall.toml");
+    // Worlds of one clutter.
+    write(&folder, "scenes/more.toml", &HALL.replace("seed = 5", "seed = 9"));
+    batch("batch scenes --stacks key-point-fusion,astar-follow --seeds 2");
     assert!(!names().contains("success"), "{}", names());
     // Nothing reached the goal.
-    write(&folder, "scenes/hall.toml", &format!("{HALL}time_limit_s = 0.5\n"));
-    batch("batch scenes/hall.toml");
+    for name in ["hall", "more"] {
+        let scene = read(&folder, &format!("scenes/{name}.toml"));
+        write(&folder, &format!("scenes/{name}.toml"), &format!("{scene}time_limit_s = 0.5\n"));
+    }
+    batch("batch scenes --stacks key-point-fusion,astar-follow --seeds 2");
     assert_eq!(names(), "");
 }
 

@@ -110,16 +110,18 @@ fn a_run_is_that_of_all_robots_and_each_has_a_row() {
     assert!(csv.starts_with("scene,stack,seed,robot,") && csv.lines().count() == 13, "{csv}");
     assert!(!read(&folder, "out/runs.csv").lines().next().unwrap().contains(",robot,"));
     assert!(read(&folder, "out/summary.md").contains("| robots |"));
-    // Without several robots there are no such files, and earlier ones are removed.
-    keyway(folder.path(), "batch scenes/hall.toml --out out").expect_code(0);
-    assert!(!folder.path().join("out/robots.csv").exists());
-    assert!(!read(&folder, "out/summary.md").contains("| robots |"));
+    // Without several robots there are no such files.
+    keyway(folder.path(), "batch scenes/hall.toml --out single").expect_code(0);
+    assert!(!folder.path().join("single/robots.csv").exists());
+    assert!(!read(&folder, "single/summary.md").contains("| robots |"));
 }
 
 #[test]
 fn stacks_and_robots_that_are_named_are_those_of_all_robots() {
     let folder = scenes();
     let run = |rest: &str| -> (Value, Vec<Value>) {
+        // A folder keeps the runs of its batch.
+        let _ = fs::remove_dir_all(folder.path().join("out"));
         keyway(folder.path(), &format!("batch scenes/pair.toml --out out {rest}")).expect_code(0);
         let stack = |row: &Value| row["stack"].clone();
         let robots = lines(&folder, "out/robots.jsonl").iter().map(stack).collect();

@@ -96,8 +96,9 @@ fn the_folders_of_the_project_are_batches() {
     for (below, name) in [("", "complaints/beside_a_wall"), ("complaints", "beside_a_wall")] {
         let given = scenes.join(below);
         // All scenes are read, and the first one is driven.
-        let line = format!("batch {} --shard 1/1000 --out out", given.display());
+        let out = format!("out-{below}");
+        let line = format!("batch {} --shard 1/1000 --out {out}", given.display());
         keyway(folder.path(), &line).expect_code(0);
-        assert_eq!(names(&folder, "out"), [name]);
+        assert_eq!(names(&folder, &out), [name]);
     }
 }

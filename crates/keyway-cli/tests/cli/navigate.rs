@@ -323,8 +323,11 @@ fn robots_by_name_and_from_files() {
 fn demo_leaves_a_scene_that_can_be_driven_again() {
     let folder = tempfile::tempdir().unwrap();
     let demo = keyway(folder.path(), "demo").expect_code(0);
-    let last = demo.out.trim_end().lines().last().unwrap();
-    assert!(last.contains("map.png"), "{last}");
+    let mut last = demo.out.trim_end().lines().rev();
+    let next = last.next().and_then(|line| line.strip_prefix("keyway ")).unwrap().to_owned();
+    assert!(last.next().unwrap().contains("map.png"), "{}", demo.out);
+    // The proposal works.
+    keyway(folder.path(), &next).expect_code(0);
     let listed: Vec<&str> =
         demo.out.lines().filter_map(|line| line.strip_prefix("wrote ")).collect();
     for line in &listed {

@@ -22,6 +22,8 @@ fn what_was_written_is_said() {
                 "c/report.json",
                 "c/table.csv",
                 "c/table.tex",
+                "c/against_first.csv",
+                "c/against_first.tex",
                 "c/queries.csv",
                 "c/walled.svg",
                 "c/walled.png",

@@ -8,7 +8,7 @@ use super::{BatchError, BatchReport, BatchRequest, Pictures, Record, RunId};
 use crate::progress::Progress;
 use crate::results::Journal;
 use keyway_sim::parallel::processors;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -33,8 +33,11 @@ impl BatchRequest {
         let out = Output::prepare(&self.out, pictures, progress)?;
         let mut journal = Journal::<Record>::open(&out.folder)?;
         let mut records = vec![None; runs.len()];
-        fill(&runs, &mut records, known(&out.folder)?);
-        fill(&runs, &mut records, journal.take());
+        let earlier = [known(&out.folder)?, journal.take()];
+        self.refuse_to_drop(earlier.iter().flatten(), &runs)?;
+        for held in earlier {
+            fill(&runs, &mut records, held);
+        }
         let kept = Kept::prepare(&self.out, self.keep, runs.iter().map(Planned::id))?;
         for (run, record) in runs.iter().zip(&mut records) {
             record.take_if(|record| kept.lacks(run.id(), record));
@@ -46,6 +49,29 @@ impl BatchRequest {
         journal.remove();
         Ok(report)
     }
+}
+
+impl BatchRequest {
+    /// Refuses a folder with runs that are not part of this batch, which would be lost. A run that
+    /// is made again because its scene or stack has changed is part of it.
+    fn refuse_to_drop<'a>(
+        &self,
+        mut earlier: impl Iterator<Item = &'a Record>,
+        runs: &[Planned],
+    ) -> Result<(), BatchError> {
+        let planned: HashSet<_> = runs.iter().map(|run| name_of(run.id())).collect();
+        let other = earlier.find(|record| !planned.contains(&name_of(record.run.id())));
+        other.map_or(Ok(()), |record| {
+            let RunId { scene, stack, seed, .. } = record.run.id();
+            let run = format!("{scene} with {stack} and seed {seed}");
+            Err(BatchError::OtherRuns { folder: self.out.clone(), run })
+        })
+    }
+}
+
+/// Scene, stack and seed of a run.
+fn name_of(id: RunId<'_>) -> (&str, &str, u64) {
+    (id.scene, id.stack, id.seed)
 }
 
 /// Assigns records to their runs.

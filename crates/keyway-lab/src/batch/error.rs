@@ -32,6 +32,17 @@ pub enum BatchError {
         /// Given number.
         found: u64,
     },
+    /// The folder `out` holds runs of another batch.
+    #[error(
+        "{} holds runs that this batch does not have, such as {run}, and they would be lost; give another folder, or remove this one first",
+        folder.display()
+    )]
+    OtherRuns {
+        /// The folder.
+        folder: PathBuf,
+        /// One of its runs.
+        run: String,
+    },
     /// `jobs` is 0.
     #[error("jobs must be at least 1")]
     NoJobs,
@@ -162,6 +173,7 @@ impl BatchError {
             Self::NoParts | Self::Parts(_) => Some("parts"),
             Self::NoOut
             | Self::OutIsPart { .. }
+            | Self::OtherRuns { .. }
             | Self::RecordInTheWay { .. }
             | Self::Results(_) => Some("out"),
             Self::Seeds { .. } => Some("seeds"),

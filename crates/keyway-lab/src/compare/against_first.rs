@@ -4,7 +4,7 @@ use super::Compared;
 use super::contest::ContestEntry;
 use super::row::SAME_M;
 use crate::significance::{Differences, holm_of, p_value};
-use crate::table::{number, rows, with_range};
+use crate::table::{comment, latex_table, number, rows, with_range};
 use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 
@@ -95,6 +95,31 @@ pub fn against_first_note(map: &Compared, all: &[AgainstFirst]) -> Option<String
     let lines = own().map(cells).collect();
     Some(format!("{title}\n\n{}", rows(&header, lines, 2)))
 }
+
+/// Returns the comparisons of all maps as LaTeX.
+pub fn against_first_latex(all: &[AgainstFirst]) -> String {
+    let header = [
+        "map",
+        "planner",
+        "smoother",
+        "pairs",
+        "equal",
+        "difference m",
+        "effect",
+        "p (length)",
+        "p (solved)",
+    ];
+    let line = |one: &AgainstFirst| [vec![one.map.clone()], cells(one)].concat();
+    let about = all.first().map_or_else(String::new, |one| {
+        let AgainstFirst { first_planner, first_smoother, .. } = one;
+        comment(&format!("Against {first_planner}, {first_smoother}. {ABOUT}"))
+    });
+    about + &latex_table(&header, &all.iter().map(line).collect::<Vec<_>>(), 3)
+}
+
+const ABOUT: &str = "difference: of the lengths, its median and in brackets its 95 % confidence\n\
+                     interval; effect: rank-biserial correlation; p: Wilcoxon's signed-rank test of lengths and\n\
+                     McNemar's exact test of solved queries, both corrected by Holm's method.";
 
 fn cells(one: &AgainstFirst) -> Vec<String> {
     // Drops the sign of a zero.

@@ -6,7 +6,7 @@ use super::figures::{
     TURNING_ANGLE_DEG, TURNS,
 };
 use super::row::{ALL_MAPS, CompareRow};
-use crate::table::{latex_table, number, percent, range, rows};
+use crate::table::{comment, latex_table, number, percent, range, rows};
 use keyway::files::did_you_mean;
 use keyway::search::CornerRule;
 use std::collections::BTreeSet;
@@ -191,7 +191,8 @@ impl ChosenColumns {
     /// Returns the table of all rows as LaTeX.
     pub fn latex(&self, rows: &[CompareRow]) -> String {
         let (header, lines, words) = self.table(rows);
-        latex_table(&header, &lines, words)
+        let about = "Means over the compared queries; in brackets the 5th and the 95th percentile of the queries.";
+        comment(about) + &latex_table(&header, &lines, words)
     }
 
     /// Returns the table of a map.

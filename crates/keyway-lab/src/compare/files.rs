@@ -20,6 +20,8 @@ impl CompareFiles {
     pub const TABLE: &str = "table.csv";
     /// Name of the table of all rows, as LaTeX.
     pub const LATEX: &str = "table.tex";
+    /// Names of the table of the tests against the first row, as CSV and as LaTeX.
+    pub const AGAINST_FIRST: [&str; 2] = ["against_first.csv", "against_first.tex"];
     /// Name of the table of all answers, as CSV.
     pub const QUERIES: &str = "queries.csv";
 
@@ -70,7 +72,10 @@ impl CompareFiles {
     }
 
     /// Files of all comparisons, in the order in which reports list them.
-    const TABLES: [&str; 4] = [Self::REPORT, Self::TABLE, Self::LATEX, Self::QUERIES];
+    const TABLES: [&str; 6] = {
+        let [csv, latex] = Self::AGAINST_FIRST;
+        [Self::REPORT, Self::TABLE, Self::LATEX, csv, latex, Self::QUERIES]
+    };
 }
 
 /// Returns file names for pictures of maps, without an extension: each map's name without its own
@@ -117,7 +122,7 @@ mod tests {
     #[test]
     fn names_of_files() {
         let files = CompareFiles::of_maps(&["a.map".to_owned(), "b.map".to_owned()]);
-        let expected = "report.json table.csv table.tex queries.csv a.svg a.png b.svg b.png";
+        let expected = "report.json table.csv table.tex against_first.csv against_first.tex queries.csv a.svg a.png b.svg b.png";
         assert_eq!(files.names().join(" "), expected);
     }
 }

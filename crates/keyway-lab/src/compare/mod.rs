@@ -23,7 +23,7 @@ mod request_error;
 mod row;
 mod unsolved;
 
-pub use against_first::{AgainstFirst, against_first_note};
+pub use against_first::{AgainstFirst, against_first_latex, against_first_note};
 pub use columns::{ChosenColumns, ColumnError};
 pub use contest::{Answer, Contest, ContestEntry, Found, Oracle};
 pub use ends::Ends;

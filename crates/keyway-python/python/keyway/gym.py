@@ -13,6 +13,7 @@ seed are the same.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +42,23 @@ __all__ = ["Drive"]
 _SEEDS = 2**32
 #: Bound of the distance to the goal [m].
 _FARTHEST = 1e5
+
+
+def _listed(given: Scene | str | os.PathLike[str] | Sequence[Scene | str | os.PathLike[str]]) -> list[Scene]:
+    """Returns scenes, read from their files where paths are given."""
+    one_or_all: Any = given
+    items = [one_or_all] if isinstance(one_or_all, (Scene, str, os.PathLike)) or not hasattr(one_or_all, "__iter__") else list(one_or_all)
+    scenes = []
+    for item in items:
+        if isinstance(item, (str, os.PathLike)):
+            scenes.append(Scene.read(item))
+        elif isinstance(item, Scene):
+            scenes.append(item)
+        else:
+            raise TypeError(f"scenes: expected a Scene, a path of a scene file, or a list of them, got {type(item).__name__}")
+    if not scenes:
+        raise ValueError("scenes: expected at least one")
+    return scenes
 
 
 class Drive(Base):
@@ -79,7 +97,7 @@ class Drive(Base):
 
     def __init__(
         self,
-        scenes: Scene | Sequence[Scene],
+        scenes: Scene | str | os.PathLike[str] | Sequence[Scene | str | os.PathLike[str]],
         reached: float = 10.0,
         collided: float = -10.0,
         render_mode: str | None = None,
@@ -95,9 +113,8 @@ class Drive(Base):
         self.render_mode = render_mode
         self._picture: Picture | None = None
         self._window: Window | None = None
-        self._scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
-        if not self._scenes:
-            raise ValueError("scenes: expected at least one")
+        self._scenes = _listed(scenes)
+        self._is_reset = False
         robots = sorted({scene.robot for scene in self._scenes})
         if len(robots) > 1:
             raise ValueError(f"scenes: expected the same robot in all of them, got {', '.join(robots)}")
@@ -142,7 +159,7 @@ class Drive(Base):
         scene = self._scenes[int(self.np_random.integers(len(self._scenes)))]
         if scene.is_random:
             scene = scene.replace(seed=int(self.np_random.integers(_SEEDS)))
-        self._simulation, self._picture = Simulation(scene), None
+        self._simulation, self._picture, self._is_reset = Simulation(scene), None, True
         observation = self._observation()
         self._distance = float(observation["goal"][0])
         self._show()
@@ -163,6 +180,10 @@ class Drive(Base):
         action = np.asarray(action)
         if action.shape != (2,):
             raise ValueError(f"action: expected (v, omega), got an array of shape {action.shape}")
+        if not self._is_reset:
+            raise gymnasium.error.ResetNeeded("call reset() before the first step()")
+        if not np.isfinite(action).all():
+            raise ValueError(f"action: expected finite numbers, got {action.tolist()}")
         if self._range is not None:
             low, high = self._range
             action = low + (action + 1) / 2 * (high - low)

@@ -22,6 +22,7 @@ impl From<BatchError> for CliError {
             | BatchError::SceneTwice { .. }
             | BatchError::Stopped => Kind::Usage,
             BatchError::OutIsPart { .. }
+            | BatchError::OtherRuns { .. }
             | BatchError::RecordInTheWay { .. }
             | BatchError::Results(_)
             | BatchError::Picture(_) => Kind::Output,

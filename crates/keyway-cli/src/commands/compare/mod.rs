@@ -12,8 +12,8 @@ use crate::pictures::png;
 use crate::progress::Progress;
 use crate::stdout::print_files;
 use keyway_lab::compare::{
-    CompareFiles, CompareReport, Compared, Comparison, Queried, against_first_note, left_out_note,
-    lowered_note, query_rows, unsolved_note,
+    CompareFiles, CompareReport, Compared, Comparison, Queried, against_first_latex,
+    against_first_note, left_out_note, lowered_note, query_rows, unsolved_note,
 };
 use keyway_lab::results::OutDir;
 use keyway_lab::table::csv;
@@ -67,6 +67,9 @@ fn write(
     out.write(CompareFiles::REPORT, crate::json::to_string(report).as_bytes())?;
     out.write(CompareFiles::TABLE, csv(&report.rows).as_bytes())?;
     out.write(CompareFiles::LATEX, comparison.columns().latex(&report.rows).as_bytes())?;
+    let [csv_name, latex_name] = CompareFiles::AGAINST_FIRST;
+    out.write(csv_name, csv(&report.against_first).as_bytes())?;
+    out.write(latex_name, against_first_latex(&report.against_first).as_bytes())?;
     let all: Vec<_> = maps.iter().flat_map(query_rows).collect();
     out.write(CompareFiles::QUERIES, csv(&all).as_bytes())?;
     for (map, [svg_name, png_name]) in maps.iter().zip(files.pictures()) {
