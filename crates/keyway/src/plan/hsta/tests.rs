@@ -73,7 +73,7 @@ fn ends_beside_obstacles() {
     };
     assert_eq!(error, expected);
     let text = error.to_string();
-    assert!(text.starts_with("start (1, 1) is 1 from an obstacle"), "{text}");
+    assert!(text.starts_with("start (1, 1) is 1 from the nearest obstacle"), "{text}");
     // A disc of one cell around start and goal reaches (1, 2), which is 2 from the obstacle.
     let freed = hsta(HstaConfig { free_ends_m: 1.0, ..HstaConfig::PAPER });
     let (plan, _) = drawn::plan(&freed, &["......", "......", ".S#..G", "......"]).unwrap();
