@@ -85,8 +85,7 @@ export const texts = {
     notInScene: "Drawn walls are not part of the scene.",
     clipboard: "The address of this page is the link: copy it.",
     mapTooLarge: "This map is too large for a link: send its files with the link.",
-    tooManyWalls: (most: number) =>
-        `More than ${most} cells were drawn, too many for a link.`,
+    tooManyWalls: (most: number) => `More than ${most} cells were drawn, too many for a link.`,
     stopped: "Stopped.",
     whole: "Show the whole map",
     notStarted: (why: string) => `The page could not start: ${why}.`,

@@ -112,11 +112,7 @@ export class ComparePanel implements Panel {
         const question = { ask: "compare", planners, smoothers, radius_m, queries, seed };
         const { head } = await engine.ask<Comparison>(question, {}, stop);
         this.wide.replaceChildren(
-            // There is one map.
-            table(
-                head.header.slice(1),
-                head.rows.map((row) => row.slice(1)),
-            ),
+            table(head.header, head.rows),
             button("CSV", () => save("compare.csv", head.csv)),
             button(texts.answersCsv, () => save("queries.csv", head.queries_csv)),
             button("LaTeX", () => save("compare.tex", head.latex)),

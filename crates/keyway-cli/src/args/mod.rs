@@ -373,8 +373,8 @@ pub(crate) struct CompareArgs {
     /// `--set smoother.safe_distance_m=0.2`; the same holds for planners (`planner...`)
     #[arg(long, alias = "smoother", value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) smoothers: Vec<String>,
-    /// Starts and goals: lines of `start_x_m,start_y_m,goal_x_m,goal_y_m`, or in the order given by a
-    /// header with these names; with a column `map`, each line applies only to that map
+    /// Starts and goals: lines of `start_x_m,start_y_m,goal_x_m,goal_y_m`, or in the order given
+    /// by a header with these names; with a column `map`, each line applies only to that map
     #[arg(long, value_name = "FILE.csv", conflicts_with = "scen")]
     pub(crate) pairs: Option<PathBuf>,
     /// Starts and goals: a MovingAI scenario file

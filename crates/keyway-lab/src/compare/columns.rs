@@ -259,7 +259,7 @@ mod tests {
             Cell::Text(_) => None,
         });
         let all: Vec<&Figure> = means.chain([&CLEARANCE_M, &EXCESS]).collect();
-        assert_eq!(all.len(), 7);
+        assert_eq!(all.len(), 9);
         assert!(all.iter().all(|figure| figure.place().is_some()), "{all:?}");
     }
 }

@@ -248,7 +248,7 @@ mod tests {
             ("-2,0,1,1", 1, "the start (-2, 0) is outside the map"),
             ("H\n", 1, "no pair"),
             ("", 1, "no pair"),
-            ("map,H\nb,0,0,1,1", 1, "names a.map in no line"),
+            ("map,H\nb,0,0,1,1", 1, "no line has a.map in the column `map`"),
             ("map,H\na,0,0,1", 2, "4 values, but 5 columns"),
             ("map,H\na", 2, "1 values"),
             ("H\na,0,0,1,1", 2, "5 values"),

@@ -168,6 +168,6 @@ mod tests {
         let long = format!("{{\"run\":1}}\n{{\"run\":{}}}\n", "1".repeat(17 << 20));
         fs::write(&path, long).unwrap();
         let refused = open(folder.path()).err().unwrap();
-        assert!(refused.to_string().contains("journal.jsonl: line 2 holds 1782"), "{refused}");
+        assert!(refused.to_string().contains("journal.jsonl: line 2 has 1782"), "{refused}");
     }
 }
