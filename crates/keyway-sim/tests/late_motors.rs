@@ -108,7 +108,7 @@ fn what_was_learned_is_reported() {
     assert_eq!(noticed(0.25, 0.0), Vec::<String>::new());
     let said = noticed(0.1, 0.15);
     assert_eq!(said.len(), 1, "{said:?}");
-    assert!(said[0].contains("0.25 s later, not 0.10 s: set actuation_delay_s = 0.25"), "{said:?}");
+    assert!(said[0].contains("0.25 s, not 0.10 s: set actuation_delay_s = 0.25"), "{said:?}");
 }
 
 /// A description of a fault, and a function that causes it.
@@ -131,7 +131,7 @@ fn what_is_wrong_with_a_robot_costs_it_little() {
             it.actuation.dead_band_radps = 0.24;
         }),
         ("always 0", &|it| it.localisation.velocity_is_zero = true),
-        ("later", &|it| it.actuation.lag_s = 0.2),
+        ("the actuation delay is", &|it| it.actuation.lag_s = 0.2),
         ("same scan", &|it| {
             it.sensor.period_s = 0.2;
             it.sensor.held_scans = true;
