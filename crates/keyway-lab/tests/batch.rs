@@ -90,7 +90,10 @@ fn a_batch_that_was_stopped_goes_on_and_parts_make_the_whole() {
     let one = MergeRequest { parts: parts[..1].to_vec(), out: folder.path().join("merged") };
     let error = one.merge(&(), &()).unwrap_err();
     assert_eq!(error.field(), Some("parts"));
-    assert!(error.to_string().contains("other parts of the same batch are missing: 1/2"), "{error}");
+    assert!(
+        error.to_string().contains("other parts of the same batch are missing: 1/2"),
+        "{error}"
+    );
     let both = MergeRequest { parts, ..one };
     assert_eq!(both.merge(&(), &()).unwrap().runs, 5);
     assert_eq!(runs(&both.out), whole);
