@@ -228,12 +228,12 @@ impl Ranges<'_> {
     /// Returns the numbers.
     pub(crate) fn numbers(&self, name: &str) -> PyResult<Vec<f64>> {
         let wrong =
-            |got: String| bad_value(format!("{name}: expected a row of numbers, got {got}"));
+            |got: String| bad_value(format!("{name}: expected a sequence of numbers, got {got}"));
         let array = if let Ok(array) = self.0.cast::<PyArray1<f64>>() {
             array.clone()
         } else {
             let made = reals(&self.0).map_err(|error| {
-                PyTypeError::new_err(format!("{name}: expected a row of numbers ({error})"))
+                PyTypeError::new_err(format!("{name}: expected a sequence of numbers ({error})"))
             })?;
             made.cast_into::<PyArray1<f64>>()
                 .map_err(|error| wrong(described(&error.into_inner())))?

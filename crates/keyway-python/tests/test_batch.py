@@ -107,11 +107,11 @@ def test_a_comparison_as_html(rooms: keyway.Map) -> None:
     root = ElementTree.fromstring(comparison._repr_html_())
     header = [cell.text for cell in root.iter("th")]
     rows = [[cell.text for cell in row] for row in root.iterfind("tbody/tr")]
-    assert header[:3] == ["map", "planner", "smoother"] and [row[1] for row in rows] == ["jps", "hsta"]
+    assert header[:3] == ["planner", "smoother", "solved"] and [row[0] for row in rows] == ["jps", "hsta"]
     assert all(len(row) == len(header) for row in rows)
     # The same cells as in the table for papers.
-    latex = [line for line in comparison.to_latex().splitlines() if "& jps &" in line]
-    assert latex[0].strip(" \\").split(" & ")[3:6] == [text or "" for text in rows[0][3:6]]
+    latex = [line for line in comparison.to_latex().splitlines() if line.strip().startswith("jps &")]
+    assert latex[0].strip(" \\").split(" & ")[2:5] == [text or "" for text in rows[0][2:5]]
     assert repr(comparison) == "<keyway.Comparison 2 rows>"
 
 
@@ -192,7 +192,7 @@ def test_records_of_scenes_in_memory_are_replayed(tmp_path: pathlib.Path) -> Non
 
 
 def test_what_cannot_be_compared_is_said(rooms: keyway.Map) -> None:
-    with pytest.raises(ValueError, match="planners: jps is named twice"):
+    with pytest.raises(ValueError, match="planners: jps is given twice"):
         keyway.compare(rooms, planners=["jps", "jps"])
     with pytest.raises(ValueError, match="no_planner|there is no field"):
         keyway.compare(rooms, parameters={"no_planner": {"a": 1}})
