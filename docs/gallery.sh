@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Draws the pictures of docs/planners.md and docs/concepts.md, and prints the table of the former. Needs Rust alone.
+# Draws the pictures of docs/planners.md, docs/concepts.md and docs/stack.md and of the first drive, and prints the table of
+# docs/planners.md. Needs Rust alone.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -35,3 +36,11 @@ plan bidirectional-jps --animate "$images/bidirectional-jps.gif" > /dev/null
 
 # The picture of docs/concepts.md.
 plan jps --smoother continuous-curvature --picture "$PWD/docs/images/concepts/smoothed.png" > /dev/null
+
+# The pictures of the first drive and of docs/stack.md.
+ends=(--start -8.175,-2.825 --goal 8.725,0.875 --obstacle 0,0,0.15)
+cp "$scratch/map.png" docs/images/demo.png
+"$keyway" navigate "$scratch/small_house.yaml" "${ends[@]}" --fan 16.5 --out "$scratch/fan" > /dev/null
+cp "$scratch/fan/fan.png" docs/images/stack/fan.png
+"$keyway" navigate "$scratch/small_house.yaml" "${ends[@]}" --moving 6,-0.35,0.25,-0.1,0 --out "$scratch/drive" > /dev/null
+cp "$scratch/drive/map.png" docs/images/stack/drive.png
