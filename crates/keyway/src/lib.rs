@@ -45,6 +45,9 @@
 //!
 //! On a robot, pass the measurements to [`Navigator::observe`] and call [`Navigator::step`] once
 //! per cycle; the example `own_robot` is such a loop.
+//!
+//! Guides, such as how to describe a robot and what safety needs, are in the
+//! [documentation](https://github.com/keyway-robotics/keyway/blob/main/docs/index.md).
 
 mod config_error;
 #[cfg(feature = "formats")]
