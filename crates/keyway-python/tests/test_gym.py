@@ -34,7 +34,8 @@ def test_the_checker_of_gymnasium_passes(scene: keyway.Scene, noisy: keyway.Scen
                 # Tests have no window.
                 warnings.filterwarnings("ignore", message="the backend `agg` of matplotlib opens no window")
                 check_env(gymnasium.make(name, render_mode=mode).unwrapped)
-                # The recommendation of numbers from -1 to 1 is the only thing that it says of velocities.
+                # The recommendation of numbers from -1 to 1 is the only thing that it says of
+                # velocities.
                 warnings.filterwarnings("ignore", message=".*symmetric and normalized")
                 check_env(gymnasium.make(name, render_mode=mode, normalized=False).unwrapped)
 

@@ -107,7 +107,7 @@ pub(crate) struct BatchArgs {
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", value_parser = whole::<usize, 1, { u64::MAX }>)]
     pub(crate) jobs: Option<usize>,
-    /// Folder for the results; finished runs in it are not repeated
+    /// Folder for the results; its finished runs are kept, and not repeated
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Compute only the I-th of N parts of the runs; `keyway batch merge` merges the parts

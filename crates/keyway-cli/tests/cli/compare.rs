@@ -13,12 +13,14 @@ pub(crate) fn number(row: &Value, name: &str) -> f64 {
     row[name].as_f64().unwrap_or_else(|| panic!("{name}: {row}"))
 }
 
+/// Two planners with two smoothers on two maps.
+const TWO_MAPS: &str = "compare rooms.map walled.map --planners jps,theta-star \
+                        --smoothers none,line-of-sight --queries 3 --seed 5 --format json";
+
 #[test]
 fn the_last_rows_are_over_all_maps() {
     let folder = folder();
-    let line = "compare rooms.map walled.map --planners jps,theta-star \
-                --smoothers none,line-of-sight --queries 3 --seed 5 --format json";
-    let report = keyway(folder.path(), line).expect_code(0).json();
+    let report = keyway(folder.path(), TWO_MAPS).expect_code(0).json();
     let of = |row: usize, name: &str| number(&rows(&report)[row], name);
     // Both maps have three queries, so the mean over all is the mean of both.
     let mean = f64::midpoint(of(1, "mean_length_m"), of(5, "mean_length_m"));
@@ -29,16 +31,14 @@ fn the_last_rows_are_over_all_maps() {
     // Smoothing expands nothing.
     assert_eq!(of(0, "mean_expanded"), expanded[0]);
     assert!(of(0, "mean_generated") >= expanded[0] && expanded[0] >= 1.0);
-    let table = keyway(folder.path(), line.split(" --format").next().unwrap()).out;
+    let table = keyway(folder.path(), TWO_MAPS.split(" --format").next().unwrap()).out;
     assert!(table.contains("\nall maps: 6 queries\n"), "{table}");
 }
 
 #[test]
 fn every_planner_with_every_smoother_on_every_map() {
     let folder = folder();
-    let line = "compare rooms.map walled.map --planners jps,theta-star \
-                --smoothers none,line-of-sight --queries 3 --seed 5 --format json";
-    let report = keyway(folder.path(), line).expect_code(0).json();
+    let report = keyway(folder.path(), TWO_MAPS).expect_code(0).json();
     assert_eq!(report["schema"], "keyway.compare/1");
     let names = |row: &Value| {
         ["map", "planner", "smoother"].map(|name| row[name].as_str().unwrap().to_owned())

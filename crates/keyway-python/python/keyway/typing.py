@@ -10,7 +10,8 @@ from keyway.errors import KeywayError
 
 __all__ = ["LaserScan", "LaserScans", "Plans", "Progress"]
 
-#: Called with the numbers of finished and of expected steps; the latter may be unknown. An exception stops the work.
+#: Called with the numbers of finished and of expected steps; the latter may be unknown. An
+#: exception stops the work.
 Progress: TypeAlias = Callable[[int, int | None], object]
 
 #: A plan for each query, or the exception with the reason for its absence.
@@ -33,5 +34,6 @@ class LaserScan(Protocol):
         """Bearing from one beam to the next [rad]."""
 
 
-#: The scan of a robot's only sensor, or a list with one scan per sensor, ``None`` for a sensor without a scan.
+#: The scan of a robot's only sensor, or a list with one scan per sensor, ``None`` for a sensor
+#: without a scan.
 LaserScans: TypeAlias = LaserScan | Sequence[LaserScan | None]
