@@ -74,7 +74,10 @@ impl CliError {
             return None;
         };
         let is_number = |arg: &OsString| arg.to_str().is_some_and(|arg| arg.parse::<f64>().is_ok());
-        let end = argv.iter().position(|arg| arg.to_str() == Some(found))?;
+        // The parser names `-2.825` by its first letter, as the flag `-2`.
+        let is_found = |arg: &OsString| arg.to_str().is_some_and(|arg| arg.starts_with(found));
+        let is_end = |pair: &[OsString]| is_found(&pair[1]) && pair.iter().all(is_number);
+        let end = 1 + argv.windows(2).position(is_end)?;
         let count = argv[..=end].iter().rev().take_while(|arg| is_number(arg)).count();
         let option = argv[..=end - count].last()?.to_str().filter(|it| it.starts_with("--"))?;
         let rest = argv[end + 1..].iter().take_while(|arg| is_number(arg));

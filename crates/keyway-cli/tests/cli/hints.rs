@@ -56,6 +56,8 @@ fn numbers_that_are_separated_by_spaces_are_joined() {
             "--start -8 -2: separate the numbers by commas: --start -8,-2",
         ),
         ("--start 1,1 --goal -8 2.5 -90", "--goal -8 2.5 -90: separate"),
+        ("--start -8.175 -2.825 --goal 1,1", "--start -8.175 -2.825: separate"),
+        ("--start -2.5,1 --goal -2.825 -2.5", "--goal -2.825 -2.5: separate"),
     ] {
         let line = format!("navigate small_house.yaml {options}");
         let field = meant.split(' ').next().unwrap();
