@@ -124,9 +124,9 @@ fn every_planner_with_every_smoother_on_every_map() {
     );
     let smoothed = &rows(&report)[1];
     assert!(number(smoothed, "median_smooth_us") > 0.0);
-    let again = keyway(folder.path(), line).json();
+    let again = keyway(folder.path(), TWO_MAPS).json();
     assert_eq!(again["maps"], report["maps"], "the same seed");
-    let other = keyway(folder.path(), &line.replace("seed 5", "seed 6")).json();
+    let other = keyway(folder.path(), &TWO_MAPS.replace("seed 5", "seed 6")).json();
     assert_ne!(other["maps"], report["maps"]);
 }
 
