@@ -164,7 +164,7 @@ fn drive_episode(episode: &Episode, ask: &Drive, scene: &SceneFile) -> Result<Me
     let inputs = digest(format!("{} {stack} {}", ask.scene, scene.seed).as_bytes());
     let id = RunId { scene: &ask.name, stack, seed: scene.seed, digest: &inputs };
     // A page has no clock.
-    let record = Record::of(id, (episode, &report), scene.rules.reference_time_s, 0.0);
+    let record = Record::of(id, (episode, &report), 0.0);
     let mut driven = Driven {
         reports: report.robots,
         row: record.run,

@@ -6,10 +6,8 @@ use crate::map::{MapFacts, Opened, cells_of, facts, open_file, part};
 use crate::message::{Message, json};
 use keyway::geometry::{Disc, Point};
 use keyway_lab::scenes::{BarnRequest, NamedScene};
-use keyway_sim::episode::Episode;
-use keyway_sim::scene_files::{
-    GroundShape, SceneFile, SceneMap, SceneRules, UnknownDisc, scene_from_bytes,
-};
+use keyway_sim::episode::{Episode, EpisodeRules};
+use keyway_sim::scene_files::{GroundShape, SceneFile, SceneMap, UnknownDisc, scene_from_bytes};
 use keyway_sim::worlds::GeneratedMap;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -107,7 +105,7 @@ fn text(scene: &SceneFile) -> String {
         lines.push(format!("goal = [{:?}, {:?}]", goal.position.x, goal.position.y));
     }
     lines.push("\n[rules]\narrival = \"passing\"".to_owned());
-    let SceneRules { goal_tolerance_m, time_limit_s, .. } = scene.rules;
+    let EpisodeRules { goal_tolerance_m, time_limit_s, .. } = scene.rules;
     let values = [("goal_tolerance_m", goal_tolerance_m), ("time_limit_s", time_limit_s)];
     let given = values.into_iter().filter_map(|(name, value)| Some((name, value?)));
     lines.extend(given.map(|(name, value)| format!("{name} = {value:?}")));

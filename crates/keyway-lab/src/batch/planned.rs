@@ -162,8 +162,7 @@ impl DrivenRun<'_> {
     /// Returns the results.
     pub(super) fn record(&self) -> Record {
         let Self { planned, episode, report, wall_s } = self;
-        let reference_time_s = planned.scene.file.rules.reference_time_s;
-        Record::of(planned.id(), (episode, report), reference_time_s, *wall_s)
+        Record::of(planned.id(), (episode, report), *wall_s)
     }
 
     /// Returns everything that is needed to repeat the run.

@@ -40,15 +40,10 @@ impl RunTimes {
 }
 
 impl Record {
-    /// Collects the results of a run with its report. `reference_time_s` is the time of the
-    /// fastest route at top speed, by which runs are scored; `wall_s` is the wall-clock time.
-    pub fn of(
-        id: RunId<'_>,
-        (episode, report): (&Episode, &EpisodeReport),
-        reference_time_s: Option<f64>,
-        wall_s: f64,
-    ) -> Self {
+    /// Collects the results of a run with its report; `wall_s` is the wall-clock time.
+    pub fn of(id: RunId<'_>, (episode, report): (&Episode, &EpisodeReport), wall_s: f64) -> Self {
         let measured = RunTimes::of(report, wall_s);
+        let reference_time_s = episode.rules.reference_time_s;
         let world = World { occupied_share: occupied_share(episode), reference_time_s };
         let rows = report.robots.iter().map(|robot| Row::of(id, robot, &world));
         let mut robots: Vec<Row> = rows.collect();

@@ -58,7 +58,7 @@ impl<'a> SceneReader<'a> {
             file.disturbances = read_disturbances(path).map_err(BatchError::Disturbances)?;
         }
         file.safe |= request.safe;
-        file.rules.reached_by = request.reached_by.or(file.rules.reached_by);
+        file.rules.reached_by = request.reached_by.unwrap_or(file.rules.reached_by);
         let robot_of = |(in_scene, _): (&str, &str)| match &request.robot {
             Some(name) => find_robot(name, Path::new("")),
             None => find_robot(in_scene, &folder),

@@ -10,8 +10,8 @@
 use super::table::{rows, rows_from_bytes, some_rows};
 use super::{NamedScene, ScenesError};
 use keyway::geometry::Point;
-use keyway_sim::episode::Start;
-use keyway_sim::scene_files::{SceneError, SceneFile, SceneRules, UnknownDisc, UnknownObstacle};
+use keyway_sim::episode::{EpisodeRules, Start};
+use keyway_sim::scene_files::{SceneError, SceneFile, UnknownDisc, UnknownObstacle};
 use keyway_sim::sim::Arrival;
 use keyway_sim::worlds::{Discs, GeneratedMap, Pattern};
 use serde::Deserialize;
@@ -29,13 +29,11 @@ const MAP_CORNER: Point = Point::new(-12.25, -2.0);
 const MAP_SIDE_M: f64 = 20.0;
 const CELL_M: f64 = 0.05;
 
-const RULES: SceneRules = SceneRules {
+const RULES: EpisodeRules = EpisodeRules {
     goal_tolerance_m: Some(1.0),
-    arrival: Some(Arrival::Passing),
-    reached_by: None,
+    arrival: Arrival::Passing,
     time_limit_s: Some(100.0),
-    stuck_window_s: None,
-    reference_time_s: None,
+    ..EpisodeRules::USUAL
 };
 
 /// Request for scenes of BARN worlds.
@@ -136,7 +134,7 @@ fn named(
         description: Some(format!("BARN, world {world}{known}")),
         world: Some(map),
         robot: "jackal".to_owned(),
-        rules: SceneRules { reference_time_s, ..RULES },
+        rules: EpisodeRules { reference_time_s, ..RULES },
         unknown: unknown.into_iter().map(UnknownObstacle::from).collect(),
         ..SceneFile::new(
             Start { position: START, heading_rad: Some(START_HEADING_RAD) },

@@ -11,8 +11,8 @@ use super::table::some_rows;
 use super::{NamedScene, ScenesError};
 use keyway::ConfigError;
 use keyway::geometry::Point;
-use keyway_sim::episode::Start;
-use keyway_sim::scene_files::{GroundShape, SceneFile, SceneRules, UnknownObstacle};
+use keyway_sim::episode::{EpisodeRules, Start};
+use keyway_sim::scene_files::{GroundShape, SceneFile, UnknownObstacle};
 use keyway_sim::sim::{Arrival, KeyFrame, Motion, MovingObstacle, Spline, StandingPolygon};
 use keyway_sim::worlds::GeneratedMap;
 use serde::Deserialize;
@@ -30,14 +30,13 @@ const MAP_CORNER: Point = Point::new(-10.25, -10.25);
 const MAP_SIZE_M: [f64; 2] = [24.5, 20.5];
 const CELL_M: f64 = 0.05;
 
-const RULES: SceneRules = SceneRules {
+const RULES: EpisodeRules = EpisodeRules {
     goal_tolerance_m: Some(1.0),
-    arrival: Some(Arrival::Passing),
-    reached_by: None,
+    arrival: Arrival::Passing,
     time_limit_s: Some(100.0),
-    stuck_window_s: None,
     // 20 m at 2 m/s.
     reference_time_s: Some(10.0),
+    ..EpisodeRules::USUAL
 };
 
 /// Request for scenes of `DynaBARN` worlds.

@@ -87,6 +87,7 @@ impl Task<'_> {
             time_limit_s,
             stuck_window_s,
             stuck_progress_m,
+            ..
         } = self.episode.rules;
         let usual_s = 60.0 + 4.0 * length_m / self.robot.robot.limits.v_max_mps;
         let usual_m = WayProgress::step_m(&self.robot.robot, stuck_window_s);

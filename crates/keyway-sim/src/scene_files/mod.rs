@@ -10,7 +10,6 @@ mod robot_in_scene;
 mod scene;
 mod scene_error;
 mod scene_robots;
-mod scene_rules;
 mod scene_version;
 mod unknown;
 
@@ -20,5 +19,4 @@ pub use read::{read_disturbances, read_scene};
 pub use scene::{SceneFile, SceneMap};
 pub use scene_error::SceneError;
 pub use scene_robots::SceneRobot;
-pub use scene_rules::SceneRules;
 pub use unknown::{GroundShape, UnknownDisc, UnknownObstacle};

@@ -5,10 +5,9 @@ use super::robot_in_scene::name_or_table;
 use super::robot_in_scene::robot_schema;
 use super::scene_error::SceneError;
 use super::scene_robots::SceneRobot;
-use super::scene_rules::SceneRules;
 use super::scene_version::{VERSION, Versioned};
 use super::unknown::{GroundShape, Standing, UnknownObstacle, absent_cells, validate_absent};
-use crate::episode::{Episode, EpisodeRobot, RandomObstacles, Start};
+use crate::episode::{Episode, EpisodeRobot, EpisodeRules, RandomObstacles, Start};
 use crate::report::MapSource;
 use crate::sim::{Disturbances, MovingObstacle};
 use crate::worlds::GeneratedMap;
@@ -98,8 +97,8 @@ pub struct SceneFile {
     #[serde(default, skip_serializing_if = "Disturbances::is_none")]
     pub disturbances: Disturbances,
     /// Rules that end a run.
-    #[serde(default, skip_serializing_if = "SceneRules::are_usual")]
-    pub rules: SceneRules,
+    #[serde(default, skip_serializing_if = "are_usual")]
+    pub rules: EpisodeRules,
     /// Robots that drive at the same time, instead of `start`, `via` and `goal`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<SceneRobot>,
@@ -130,6 +129,10 @@ impl From<LoadedMap> for SceneMap {
     fn from(loaded: LoadedMap) -> Self {
         Self { source: MapSource::from(&loaded), grid: loaded.grid }
     }
+}
+
+fn are_usual(rules: &EpisodeRules) -> bool {
+    *rules == EpisodeRules::USUAL
 }
 
 const fn is_not(safe: &bool) -> bool {
@@ -167,7 +170,7 @@ impl SceneFile {
             via: Vec::new(),
             goal: Some(goal),
             disturbances: Disturbances::default(),
-            rules: SceneRules::default(),
+            rules: EpisodeRules::USUAL,
             robots: Vec::new(),
             unknown: Vec::new(),
             absent: Vec::new(),
@@ -233,7 +236,7 @@ impl SceneFile {
         let Standing { obstacles, polygons, hidden_cells, elusive } =
             Standing::of(&self.unknown, grid.frame()).map_err(SceneError::Obstacle)?;
         let absent_cells = absent_cells(&self.absent, &grid).map_err(SceneError::Obstacle)?;
-        let (movers, rules) = (self.seeded_movers(), self.rules.of_episode());
+        let (movers, rules) = (self.seeded_movers(), self.rules.clone());
         let episode = Episode { source, movers, rules, ..Episode::of_robots(grid, robots) };
         let episode = Episode { obstacles, polygons, hidden_cells, ..episode };
         let mut episode = Episode { absent_cells, elusive, ..episode };

@@ -65,18 +65,21 @@ impl ReachedBy {
 
 impl Default for RunRules {
     fn default() -> Self {
-        Self {
-            goal_tolerance_m: 0.15,
-            arrival: Arrival::Passing,
-            reached_by: ReachedBy::Truth,
-            time_limit_s: 300.0,
-            stuck_window_s: 20.0,
-            stuck_progress_m: 0.05,
-        }
+        Self::USUAL
     }
 }
 
 impl RunRules {
+    /// The rules of a run of which nothing is said.
+    pub const USUAL: Self = Self {
+        goal_tolerance_m: 0.15,
+        arrival: Arrival::Passing,
+        reached_by: ReachedBy::Truth,
+        time_limit_s: 300.0,
+        stuck_window_s: 20.0,
+        stuck_progress_m: 0.05,
+    };
+
     /// Checks every value.
     ///
     /// # Errors
