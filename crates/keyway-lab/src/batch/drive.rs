@@ -7,11 +7,8 @@ use super::planned::{Planned, PlannedBatch};
 use super::{BatchError, BatchReport, BatchRequest, Pictures, Record, RunId};
 use crate::progress::Progress;
 use crate::results::Journal;
-use keyway_sim::parallel::processors;
+use keyway_sim::parallel::{processors, receive_each};
 use std::collections::{HashMap, HashSet};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
-use std::thread;
 
 impl BatchRequest {
     /// Executes the runs that the folder of the results does not hold yet, and writes all files.
@@ -110,30 +107,12 @@ impl Missing<'_> {
         }
         let jobs = self.jobs.unwrap_or_else(processors).min(missing.len());
         progress.expect(missing.len());
-        let next = AtomicUsize::new(0);
-        let (sender, receiver) = mpsc::channel();
-        thread::scope(|scope| {
-            for _ in 0..jobs {
-                let (sender, next, missing) = (sender.clone(), &next, &missing);
-                scope.spawn(move || {
-                    while let Some(&index) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        // The receiver is gone after an error.
-                        if sender.send((index, self.drive_one(index))).is_err() {
-                            return;
-                        }
-                    }
-                });
-            }
-            drop(sender);
-            for (index, record) in receiver {
-                let record = record?;
-                journal.append(&record)?;
-                records[index] = Some(record);
-                if progress.answered().is_break() {
-                    return Err(BatchError::Stopped);
-                }
-            }
-            Ok(())
+        let work = |index| (index, self.drive_one(index));
+        receive_each(missing, jobs, work, |(index, record)| {
+            let record = record?;
+            journal.append(&record)?;
+            records[index] = Some(record);
+            if progress.answered().is_break() { Err(BatchError::Stopped) } else { Ok(()) }
         })
     }
 
