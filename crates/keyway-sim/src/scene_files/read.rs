@@ -2,8 +2,7 @@
 
 use super::{SceneFile, SceneFileError, disturbances_from_bytes, scene_from_bytes};
 use crate::sim::Disturbances;
-use keyway::file_system::read_file;
-use keyway::files::{MAX_TOML_BYTES, TextFileError};
+use keyway::files::read_toml;
 use std::path::Path;
 
 /// Reads and checks a scene file.
@@ -21,9 +20,4 @@ pub fn read_scene(path: &Path) -> Result<SceneFile, SceneFileError> {
 /// Returns an error if the file cannot be read, does not contain disturbances, or sets a seed.
 pub fn read_disturbances(path: &Path) -> Result<Disturbances, SceneFileError> {
     disturbances_from_bytes(path, &read_toml(path)?)
-}
-
-/// Returns the content of a TOML file.
-fn read_toml(path: &Path) -> Result<Vec<u8>, TextFileError> {
-    Ok(read_file(path, MAX_TOML_BYTES)?)
 }

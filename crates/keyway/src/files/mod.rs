@@ -30,7 +30,9 @@ pub use parameter_layers::{
 };
 pub use parameters::parameters_from_bytes;
 #[cfg(feature = "files")]
-pub use read::{find_robot, find_stack, read_parameters, read_robot, read_stack, read_text};
+pub use read::{
+    find_robot, find_stack, read_parameters, read_robot, read_stack, read_text, read_toml,
+};
 pub use robot::{robot_from_bytes, robot_in_place};
 pub use robot_file::{LimitsPart, RobotChangeError, RobotFile, robot_with};
 pub use robot_size::{RadiusBeyondMap, RobotLayersError, RobotSize, StartingValues};

@@ -73,8 +73,11 @@ pub fn read_parameters(path: &Path) -> Result<ParameterFile, ConfigFileError> {
     parameters_from_bytes(path, &read_toml(path)?)
 }
 
-/// The content of a TOML file.
-fn read_toml(path: &Path) -> Result<Vec<u8>, TextFileError> {
+/// Reads the content of a TOML file.
+///
+/// # Errors
+/// Returns [`TextFileError`] if the file cannot be read, or holds more than [`MAX_TOML_BYTES`].
+pub fn read_toml(path: &Path) -> Result<Vec<u8>, TextFileError> {
     Ok(read_file(path, MAX_TOML_BYTES)?)
 }
 
