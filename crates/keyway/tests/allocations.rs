@@ -111,3 +111,25 @@ fn planners_share_a_workspace() {
     });
     assert!(on_their_own.eq(first));
 }
+
+#[test]
+fn a_warmed_up_search_allocates_nothing_in_its_first_query() {
+    let map = map();
+    let jps = planner("jps", &map);
+    let queries = short_queries(&map);
+    let allocated_by_first = |is_warm: bool| {
+        let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+        plan.cells.reserve(1000);
+        plan.jump_points.reserve(1000);
+        if is_warm {
+            jps.warm_up(&map, &mut workspace);
+        }
+        let info = allocation_counter::measure(|| {
+            jps.plan_into(&map, &queries[5], &mut workspace, None, &mut plan).unwrap();
+        });
+        assert!(plan.cells.len() > 1);
+        info.count_total
+    };
+    assert!(allocated_by_first(false) > 0);
+    assert_eq!(allocated_by_first(true), 0);
+}

@@ -74,6 +74,27 @@ proptest! {
     }
 }
 
+/// Also on maps without a free cell, and with one.
+#[test]
+fn plans_are_the_same_after_a_warm_up() {
+    let drawings: [&[&str]; 4] =
+        [&["#"], &["."], &["##.", "###"], &["....#...", ".##.#.#.", "...#..#.", ".#...#.."]];
+    for (rows, name) in drawings.iter().flat_map(|rows| PlannerConfig::NAMES.map(|n| (rows, n))) {
+        let map = SearchMap::new(&OccupancyGrid::from_ascii(rows), LayerConfig::default()).unwrap();
+        let planner = PlannerConfig::by_name(name).unwrap().build(&map).unwrap();
+        let (width, height) = (map.frame().width() as i32, map.frame().height() as i32);
+        let query = Query::new(Cell::new(0, 0), Cell::new(width - 1, height - 1));
+        let planned = |is_warm: bool| {
+            let (mut workspace, mut plan) = (Workspace::default(), Plan::default());
+            if is_warm {
+                planner.warm_up(&map, &mut workspace);
+            }
+            (planner.plan_into(&map, &query, &mut workspace, None, &mut plan), plan)
+        };
+        assert_eq!(planned(false), planned(true), "{name} on {rows:?}");
+    }
+}
+
 #[test]
 fn who_needs_one_cost_refuses_penalised_cells() {
     let grid = OccupancyGrid::from_ascii(&[".?."]);

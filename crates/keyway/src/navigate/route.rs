@@ -151,11 +151,13 @@ impl Router {
             Some(planner) => Arc::clone(planner),
             None => stack.planner.build(layers.obstacles())?.into(),
         };
+        let mut workspace = Workspace::default();
+        planner.warm_up(layers.obstacles(), &mut workspace);
         Ok(Self {
             planner,
             smoother: Arc::clone(smoother),
             layers,
-            workspace: Workspace::default(),
+            workspace,
             radius_m: robot.footprint.inscribed_radius_m(),
         })
     }

@@ -40,7 +40,7 @@ mod jump_points;
 mod node_pages;
 
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop, expand_a_few};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Side, Workspace, cells};
 use jump_nodes::{JumpNode, JumpNodes};
@@ -83,6 +83,11 @@ impl GlobalPlanner for Jps {
 
     fn needs_uniform_cost(&self) -> bool {
         true
+    }
+
+    fn warm_up(&self, map: &SearchMap, workspace: &mut Workspace) {
+        workspace.part::<JumpNodes>().warm_up(map);
+        expand_a_few(self, map, workspace);
     }
 
     fn search_into(

@@ -1,5 +1,7 @@
 //! An open list made of buckets.
 
+use std::hint::black_box;
+
 /// A priority queue of cell indices: entries with nearly equal keys share a bucket, and leave it
 /// last in, first out.
 ///
@@ -59,6 +61,14 @@ impl BucketQueue {
         self.len = 0;
         self.current = first >> self.shift;
         self.highest = self.current;
+    }
+
+    /// Touches the memory of queries with `touched` entries at a time, of `capacity`.
+    pub(super) fn warm_up(&mut self, capacity: usize, touched: usize) {
+        self.start(0, 0, capacity);
+        black_box(&mut self.heads[..]).fill(0);
+        self.entries.resize(touched + 1, [0; 2]);
+        black_box(&mut self.entries).truncate(1);
     }
 
     /// Adds a cell.

@@ -20,6 +20,8 @@ pub(super) struct JumpNodes {
     statistics: SideStatistics,
 }
 
+/// Most queries need no more; a fleet of robots pays for them once per robot.
+const MOST_WARM_NODES: usize = 1 << 15;
 const PENDING: u64 = 0x0f;
 const DONE: u64 = 0xf0;
 const EPOCH_SHIFT: u32 = 8;
@@ -35,6 +37,13 @@ pub(super) struct JumpNode {
 }
 
 impl JumpNodes {
+    /// Touches the memory that most queries on a map need.
+    pub(super) fn warm_up(&mut self, map: &SearchMap) {
+        let cells = map.index_count();
+        self.nodes.warm_up(cells, (cells / 16).min(MOST_WARM_NODES));
+        self.open.warm_up(cells / 8, (cells / 128).min(MOST_WARM_NODES / 8));
+    }
+
     /// Clears the last query and inserts `root` into the open list; `key` is its estimate.
     pub(super) fn start(&mut self, map: &SearchMap, root: CellIndex, key: u64) {
         self.nodes.start(map.index_count());

@@ -1,5 +1,7 @@
 //! Memory for the nodes of a search.
 
+use std::hint::black_box;
+
 /// 16 bytes for every cell that a search touches, in pages of 32 cells of a row.
 ///
 /// A page is allocated on first touch, so the nodes of one query lie close together, whatever the
@@ -43,6 +45,17 @@ impl NodePages {
             self.stamp = 1 << NUMBER_BITS;
         }
         self.used = 0;
+    }
+
+    /// Touches the memory of queries that reach `touched` cells: their nodes, and the directory.
+    pub(super) fn warm_up(&mut self, index_count: usize, touched: usize) {
+        self.start(index_count);
+        // Without the hint, writing zeros over fresh zeros is left out, and touches nothing.
+        black_box(&mut self.directory[..]).fill(0);
+        let nodes = touched.next_multiple_of(CELLS_PER_PAGE);
+        if self.nodes.len() < nodes {
+            self.nodes.resize(nodes, [0; 2]);
+        }
     }
 
     /// The number of the query, never 0; a node with this epoch was set in this query.
