@@ -79,7 +79,8 @@ impl<M: Sensed> Waiting<M> {
     ) -> Result<Option<M>, TransformError> {
         let Some(oldest) = self.messages.front() else { return Ok(None) };
         let until_s = until_s.min(transforms.latest_s(base, &oldest.header().frame_id)?);
-        Ok(self.messages.pop_front_if(|oldest| oldest.header().stamp.stamp_s() <= until_s))
+        let is_due = oldest.header().stamp.stamp_s() <= until_s;
+        Ok(if is_due { self.messages.pop_front() } else { None })
     }
 
     /// Processes all messages that are due. Messages from before the first transform are dropped.

@@ -53,7 +53,7 @@ impl Time {
 }
 
 /// Saturates; 0 for NaN.
-const fn to_micros(duration_s: f64) -> i64 {
+fn to_micros(duration_s: f64) -> i64 {
     (duration_s * 1e6).round() as i64
 }
 
