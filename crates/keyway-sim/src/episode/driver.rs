@@ -20,6 +20,9 @@ use keyway::route::Route;
 use keyway::sense::Observation;
 use std::mem::discriminant;
 
+/// Problems within this time before a contact are part of its reason \[s\].
+const BEFORE_CONTACT_S: f64 = 1.0;
+
 /// A robot about to drive.
 pub(super) struct Entry<'a> {
     pub(super) task: Task<'a>,
@@ -249,8 +252,8 @@ struct Driver<'a> {
     decisions_s: f64,
     /// Pass times of the way-points that were passed so far \[s\].
     passed_s: Vec<f64>,
-    /// The last reason why the robot was blocked, if any.
-    blocked: Option<Blocked>,
+    /// The last time at which the robot was blocked \[s\], and the reason, if any.
+    blocked: Option<(f64, Blocked)>,
     /// The doubts of the run, one of each kind.
     noticed: Vec<Doubt>,
 }
@@ -283,7 +286,7 @@ impl Driver<'_> {
                 Action::Drive(command)
             }
             Step::Blocked { command, why } => {
-                self.blocked = Some(why);
+                self.blocked = Some((t_s, why));
                 Action::Drive(command)
             }
         };
@@ -372,7 +375,12 @@ impl Driver<'_> {
                 "the remaining path did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
             ),
         };
-        let last = self.blocked.as_ref().map(|why| format!("; the last problem: {why}"));
+        // A contact has nothing to do with a problem long before.
+        let end_s = self.cycles as f64 * self.task.robot.robot.cycle_s;
+        let is_contact = matches!(run.outcome, Outcome::Collided { .. });
+        let is_of_now = |t_s: f64| !is_contact || end_s - t_s <= BEFORE_CONTACT_S;
+        let last = self.blocked.as_ref().filter(|&&(t_s, _)| is_of_now(t_s));
+        let last = last.map(|(_, why)| format!("; the last problem: {why}"));
         Some(what + &last.unwrap_or_default())
     }
 }
