@@ -41,6 +41,7 @@ impl Settings {
         vec![
             ("robot", Value::String(self.robot_name.clone())),
             ("stack", Value::String(self.stack_name.clone())),
+            ("safe", Value::Boolean(self.stack.stack().controller.safe.is_some())),
             ("use_sim_time", Value::Boolean(self.use_sim_time)),
             ("controller_frequency", Value::Float(1.0 / self.stack.robot().cycle_s)),
             ("global_frame", Value::String(self.frames.map.clone())),
@@ -100,6 +101,12 @@ mod tests {
             names.collect::<Vec<_>>()
         );
         assert_eq!(declared[0].1.as_str(), Some("jackal"));
+        let is_safe = |settings: &Settings| settings.declared()[2].1.as_bool();
+        assert_eq!(is_safe(&settings), Some(false));
+        let parameters = [("robot", "jackal"), ("safe", "true")];
+        let parameters = parameters.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let safe = Arguments { parameters: parameters.into(), ..Arguments::default() };
+        assert_eq!(is_safe(&Settings::of(&safe, None).unwrap()), Some(true));
     }
 
     #[test]

@@ -86,12 +86,13 @@ fn distribution_of(given: &mut Given, distro: Option<&str>) -> Result<Distributi
 type Parameters = BTreeMap<String, Value>;
 
 /// Parameters and their descriptions; defaults are set in [`Settings::of`].
-const PARAMETERS: [(&str, &str); 18] = [
+const PARAMETERS: [(&str, &str); 19] = [
     (
         "robot",
         "name of a bundled robot, or a robot file (TOML); required without a Nav2 parameter file",
     ),
     ("stack", "name of a stack, or a stack file (TOML); `keyway`"),
+    ("safe", "only commands after which the robot stands before anybody can run into it; false"),
     ("use_sim_time", "take the time from /clock; false"),
     ("controller_frequency", "commands per second; that of the robot's cycle"),
     ("global_frame", "frame of the map; map"),
@@ -146,6 +147,7 @@ impl Settings {
         let stack_name = given.text("stack")?.unwrap_or_else(|| "keyway".to_owned());
         let mut stack =
             find_stack(&stack_name, folder, &robot).map_err(|error| unusable("stack", &error))?;
+        stack = stack.safe_if(given.truth("safe")?.unwrap_or(false), &robot);
         let controller = &mut stack.controller;
         if let Some(tolerance_m) = given.nav2.goal_tolerance_m {
             controller.goal_tolerance_m = tolerance_m;
