@@ -464,9 +464,9 @@ Examples:
   keyway list keyway --robot jackal > jackal.toml
   keyway list s0-key-point --as-published")]
 pub(crate) struct ListArgs {
-    /// Print the parameters of this entry; those of a stack or a robot in the form of a file for
-    /// `--stack` or `--robot`
-    #[arg(value_name = "NAME")]
+    /// Print the parameters of this entry, or of a robot's file; those of a stack or a robot in the
+    /// form of a file for `--stack` or `--robot`
+    #[arg(value_name = "NAME|ROBOT.toml")]
     pub(crate) name: Option<String>,
     /// Robot from which defaults are derived [default: small]
     #[arg(long, value_name = "NAME|FILE.toml")]

@@ -168,3 +168,19 @@ fn completions_for_every_shell() {
     }
     keyway(folder().path(), "completions tea").expect_code(2);
 }
+
+#[test]
+fn a_robot_of_a_file_is_listed_whole() {
+    let folder = folder();
+    write(&folder, "mine.toml", "like = \"jackal\"\ncycle_s = 0.1\n");
+    let text = keyway(folder.path(), "list mine.toml").expect_code(0).out;
+    assert!(text.contains("\ncycle_s = 0.1\n") && text.contains("\nv_max_mps = 2.0\n"), "{text}");
+    write(&folder, "again.toml", &text);
+    assert_eq!(
+        keyway(folder.path(), "list again.toml").expect_code(0).out.split_once('\n').unwrap().1,
+        text.split_once('\n').unwrap().1
+    );
+    write(&folder, "wrong.toml", "like = \"jackal\"\ncycle = 0.1\n");
+    let error = keyway(folder.path(), "list wrong.toml").expect_code(2).err;
+    assert!(error.contains("wrong.toml: line 2") && error.contains("cycle_s"), "{error}");
+}

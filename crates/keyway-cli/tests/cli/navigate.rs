@@ -227,7 +227,12 @@ fn no_path_leaves_a_report_and_removes_what_it_does_not_belong_to() {
     };
     keyway(folder.path(), &line("walled.map")).expect_code(0);
     assert!(folder.path().join("run/trajectory.csv").exists());
-    let report = keyway(folder.path(), &line("closed.map")).expect_code(1).json();
+    let without = keyway(folder.path(), &format!("{} --explain why.jsonl", line("closed.map")));
+    let without = without.expect_code(1);
+    let report = without.json();
+    let warning = "--explain: no file was written, because the robot did not start";
+    assert!(without.err.contains(warning), "{}", without.err);
+    assert!(!folder.path().join("why.jsonl").exists());
     assert_eq!(
         (&report["outcome"], &report["plan"]["outcome"]),
         (&json!("no_path"), &json!("no_path"))

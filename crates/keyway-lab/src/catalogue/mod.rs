@@ -65,7 +65,7 @@ pub struct CatalogueEntry {
     /// Its kind.
     pub kind: EntryKind,
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// Description in one sentence.
     pub summary: String,
     /// Its parameters.
@@ -169,7 +169,7 @@ fn alternative(
         EntryKind::Guide | EntryKind::Stack | EntryKind::Robot => Vec::new(),
     };
     let parameters = parameters(path, schema, config, paper);
-    CatalogueEntry { kind, name, summary, parameters, published, file: None }
+    CatalogueEntry { kind, name: name.to_owned(), summary, parameters, published, file: None }
 }
 
 fn stack_entry(name: &'static str, stack: &Stack) -> CatalogueEntry {
@@ -180,7 +180,8 @@ fn stack_entry(name: &'static str, stack: &Stack) -> CatalogueEntry {
     let parameters = parameters("", &schema, &value(stack), &paper);
     let file = Some(file(stack, &format!("{name}: {summary}"), &parameters));
     let published = of_stack(name).into_iter().collect();
-    CatalogueEntry { kind: EntryKind::Stack, name, summary, parameters, published, file }
+    let (kind, name) = (EntryKind::Stack, name.to_owned());
+    CatalogueEntry { kind, name, summary, parameters, published, file }
 }
 
 /// Returns the values of a published stack in those of its parts that have a paper.
@@ -195,7 +196,8 @@ fn paper_stack(stack: &Stack) -> Value {
     })
 }
 
-fn robot_entry(name: &'static str, robot: &Robot) -> CatalogueEntry {
+/// Returns the entry of a robot, such as one from a file.
+pub fn robot_entry(name: &str, robot: &Robot) -> CatalogueEntry {
     let schema = schema_for!(Robot).to_value();
     let ranges_m = robot.sensors.iter().map(|sensor| sensor.range_m);
     let range_m = ranges_m.fold(0.0, f64::max);
@@ -207,7 +209,7 @@ fn robot_entry(name: &'static str, robot: &Robot) -> CatalogueEntry {
     let file = Some(file(robot, &format!("{name}: {summary}"), &parameters));
     CatalogueEntry {
         kind: EntryKind::Robot,
-        name,
+        name: name.to_owned(),
         summary,
         parameters,
         published: Vec::new(),

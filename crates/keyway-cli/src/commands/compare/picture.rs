@@ -83,7 +83,8 @@ pub(super) fn picture(map: &Compared, query: usize) -> Svg {
     if entries.len() <= MAX_LINES {
         let name = |entry: &ContestEntry| Some(format!("{}, {}", entry.planner, entry.smoother));
         let lines = lines(map, query, &entries, name);
-        let all = layers(&lines, |_, index, count| style(index, count));
+        // By method: a method has the same colour in the pictures of all queries.
+        let all = layers(&lines, |line, _, _| style(line.found_by, entries.len()));
         return all.fold(common(map, query).title(title), MapPicture::with_boxed).svg();
     }
     let Groups { shared, panels, inner } = groups(&entries);

@@ -7,7 +7,7 @@ use crate::inputs::{DEFAULT_ROBOT, PAPER_ROBOT, published_stack, robot};
 use keyway::files::did_you_mean;
 use keyway_lab::catalogue::{
     CatalogueEntry, EntryKind, Parameter, PublishedSetup, PublishedUse, StackValues, catalogue,
-    value_text,
+    robot_entry, value_text,
 };
 use keyway_lab::table::{facts, paragraph, rows};
 use serde::Serialize;
@@ -25,7 +25,7 @@ struct ListReport<'a> {
 #[derive(Serialize)]
 struct Listed<'a> {
     kind: EntryKind,
-    name: &'static str,
+    name: &'a str,
     summary: &'a str,
     /// `None` if they were not requested.
     parameters: Option<&'a [Parameter]>,
@@ -47,8 +47,12 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
     let robot_name = args.robot.as_deref().unwrap_or(usual);
     let values = if args.as_published { StackValues::AsPublished } else { StackValues::ForRobot };
     let mut entries = catalogue(&robot(robot_name, Path::new(""))?, values);
-    if let Some(name) = &args.name {
-        let known: Vec<&str> = entries.iter().map(|entry| entry.name).collect();
+    let is_file = |name: &&String| Path::new(name).extension().is_some_and(|kind| kind == "toml");
+    if let Some(file) = args.name.as_ref().filter(is_file) {
+        let own = robot(file, Path::new("")).map_err(|error| error.field("NAME"))?;
+        entries = vec![robot_entry(file, &own)];
+    } else if let Some(name) = &args.name {
+        let known: Vec<&str> = entries.iter().map(|entry| &entry.name[..]).collect();
         if !known.contains(&name.as_str()) {
             let meant = did_you_mean(name, known.iter().copied());
             let known = known.join(", ");
@@ -58,7 +62,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
         if args.as_published {
             published_stack(name).map_err(|error| error.field("NAME"))?;
         }
-        entries.retain(|entry| entry.name == name);
+        entries.retain(|entry| &entry.name == name);
     }
     let is_whole = args.name.is_some();
     match args.format {
@@ -78,7 +82,7 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
 fn listed(entry: &CatalogueEntry, is_whole: bool) -> Listed<'_> {
     Listed {
         kind: entry.kind,
-        name: entry.name,
+        name: &entry.name,
         summary: &entry.summary,
         parameters: is_whole.then_some(&entry.parameters),
         published: is_whole.then(|| entry.published.iter().map(published).collect()),
@@ -100,7 +104,7 @@ fn published(&PublishedUse { source, method, setup }: &PublishedUse) -> Publishe
 
 fn show_names(entries: &[CatalogueEntry]) -> Result<(), CliError> {
     let row =
-        |e: &CatalogueEntry| vec![e.kind.name().to_owned(), e.name.to_owned(), e.summary.clone()];
+        |e: &CatalogueEntry| vec![e.kind.name().to_owned(), e.name.clone(), e.summary.clone()];
     print(&rows(&["kind", "name", "description"], entries.iter().map(row).collect(), 3))?;
     print("\n`keyway list NAME` prints the parameters of an entry.")
 }

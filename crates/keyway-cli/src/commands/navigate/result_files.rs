@@ -83,6 +83,7 @@ pub(crate) fn write_all(
     driven: &Driven,
     out: Option<OutDir>,
 ) -> Result<Vec<String>, CliError> {
+    warn_without_a_run(args, driven);
     warn_without_a_fan(args, driven);
     let mut files = Vec::new();
     if let Some(out) = &out {
@@ -97,6 +98,23 @@ pub(crate) fn write_all(
     write_own_files(args, episode, driven)?;
     out.map(OutDir::finish).transpose()?;
     Ok(files)
+}
+
+/// Warns of requested files that are not written, because there was no run.
+fn warn_without_a_run(args: &DriveFileArgs, driven: &Driven) {
+    if driven.drive.is_some() {
+        return;
+    }
+    let given = [
+        (EXPLAIN, args.explain.is_some()),
+        (ANIMATE, args.animate.is_some()),
+        (RECORD, args.record.is_some()),
+    ];
+    for (option, _) in given.into_iter().filter(|&(_, is_given)| is_given) {
+        crate::stdout::warn(format!(
+            "{option}: no file was written, because the robot did not start"
+        ));
+    }
 }
 
 /// Warns if the run ended before the requested time of the candidate picture.
