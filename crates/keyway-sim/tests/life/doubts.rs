@@ -3,7 +3,7 @@
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Pose, Velocity};
 use keyway::navigate::Doubt;
-use keyway::sense::{Observation, SensorScan};
+use keyway::sense::{Observation, Scan, SensorScan};
 use keyway_sim::sim::World;
 
 fn driving() -> RobotInAWorld {
@@ -105,6 +105,22 @@ fn a_scan_that_is_given_again_is_noticed() {
     }
     life.drive_for(2.2);
     assert_eq!(life.navigator.doubts(), [], "it is over");
+}
+
+/// In the open, scans are all alike. Many lidars give 0 for beams that parts of the robot mask.
+#[test]
+fn a_scan_of_nothing_is_not_a_scan_given_again() {
+    let mut life = driving();
+    let mut scan = Scan::of_nothing(&life.robot.sensors[0]);
+    scan.ranges_m[100] = 0.0;
+    for _ in 0..20 {
+        let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
+        let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
+        assert_eq!(life.navigator.doubts(), []);
+        life.navigator.step();
+        life.obey(Velocity::new(0.4, 0.0));
+    }
 }
 
 /// Between two endless parallel walls, a scan without noise is the same everywhere: the sensor is

@@ -157,6 +157,11 @@ impl<R: Ranges> Scan<R> {
         (0..self.beams()).all(|beam| self.reading(beam).is_none())
     }
 
+    /// True if a beam hits something.
+    pub(crate) fn has_hits(&self) -> bool {
+        (0..self.beams()).any(|beam| matches!(self.reading(beam), Some(Reading::Hit(_))))
+    }
+
     /// The reading of a beam; `None` if the beam does not exist or is invalid.
     pub fn reading(&self, beam: usize) -> Option<Reading> {
         let range_m = self.ranges_m.as_ranges().get(beam)?;

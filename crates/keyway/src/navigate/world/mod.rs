@@ -236,9 +236,8 @@ impl World {
         let velocity = self.told.map_or(Velocity::ZERO, |told| told.velocity);
         let given = scan.scan.ranges_m;
         let is_same = ranges_m.iter().map(|m| m.to_bits()).eq(given.iter().map(f64::to_bits));
-        let has_hits = given.iter().any(f64::is_finite);
         let (frame, footprint) = (self.known.frame(), &parts.robot.footprint);
-        if is_same && has_hits {
+        if is_same && scan.scan.has_hits() {
             if Doubts::has_come_far(velocity, projected.robot(), pose) {
                 self.doubts.note_repeated(scan.sensor, time);
                 self.again.project(frame, footprint, pose, scan);
