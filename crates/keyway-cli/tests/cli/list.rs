@@ -180,6 +180,8 @@ fn a_robot_of_a_file_is_listed_whole() {
         keyway(folder.path(), "list again.toml").expect_code(0).out.split_once('\n').unwrap().1,
         text.split_once('\n').unwrap().1
     );
+    let published = keyway(folder.path(), "list mine.toml --as-published").expect_code(2).err;
+    assert!(published.contains("mine.toml"), "{published}");
     write(&folder, "wrong.toml", "like = \"jackal\"\ncycle = 0.1\n");
     let error = keyway(folder.path(), "list wrong.toml").expect_code(2).err;
     assert!(error.contains("wrong.toml: line 2") && error.contains("cycle_s"), "{error}");

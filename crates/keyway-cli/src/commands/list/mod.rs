@@ -59,10 +59,10 @@ pub(crate) fn run(args: &ListArgs) -> Result<Done, CliError> {
             let message = format!("there is no entry `{name}`, expected one of {known}{meant}");
             return Err(CliError::new(Kind::Usage, message).field("NAME"));
         }
-        if args.as_published {
-            published_stack(name).map_err(|error| error.field("NAME"))?;
-        }
         entries.retain(|entry| &entry.name == name);
+    }
+    if let Some(name) = args.name.as_ref().filter(|_| args.as_published) {
+        published_stack(name).map_err(|error| error.field("NAME"))?;
     }
     let is_whole = args.name.is_some();
     match args.format {

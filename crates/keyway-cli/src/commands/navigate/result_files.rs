@@ -19,6 +19,7 @@ use std::path::PathBuf;
 const EXPLAIN: &str = "--explain";
 const ANIMATE: &str = "--animate";
 const RECORD: &str = "--record";
+const FAN: &str = "--fan";
 
 /// Names of all files that [`write_files`] may write.
 pub(crate) const FILES: [&str; 8] = [
@@ -109,6 +110,7 @@ fn warn_without_a_run(args: &DriveFileArgs, driven: &Driven) {
         (EXPLAIN, args.explain.is_some()),
         (ANIMATE, args.animate.is_some()),
         (RECORD, args.record.is_some()),
+        (FAN, args.fan.is_some()),
     ];
     for (option, _) in given.into_iter().filter(|&(_, is_given)| is_given) {
         crate::stdout::warn(format!(
@@ -122,7 +124,7 @@ fn warn_without_a_fan(args: &DriveFileArgs, driven: &Driven) {
     if let (Some(fan_s), Some(Drive { fan: None, .. })) = (args.fan, &driven.drive) {
         let time_s = driven.report.run.as_ref().map_or(0.0, |run| run.time_s);
         let message = format!(
-            "--fan {fan_s}: no candidates were drawn, because the run ended after {time_s:.1} s"
+            "{FAN} {fan_s}: no candidates were drawn, because the run ended after {time_s:.1} s"
         );
         crate::stdout::warn(message);
     }
