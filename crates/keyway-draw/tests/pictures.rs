@@ -58,7 +58,7 @@ fn disc(radius_m: f64) -> Footprint {
 /// One that crosses the robot's path back and forth forever, and one that crosses it once.
 fn movers() -> Vec<MovingObstacle> {
     let ends = vec![Point::new(2.0, 1.0), Point::new(2.0, 3.0)];
-    let across = keyway_sim::sim::Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
+    let across = keyway_sim::sim::ObstacleMotion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
     let past = MovingObstacle::straight(Point::new(3.0, 3.5), 0.2, Point::new(0.0, -0.3)).unwrap();
     vec![MovingObstacle::new(0.15, across).unwrap(), past]
 }

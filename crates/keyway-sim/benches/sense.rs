@@ -111,7 +111,7 @@ fn of_a_command(criterion: &mut Criterion) {
                 delay_s: 0.0,
                 pose,
                 velocity,
-                smoothed: None,
+                jerk_limited: None,
             };
             let id = BenchmarkId::new(format!("sense/stop rule, {name}"), place);
             criterion.bench_with_input(id, &around, |bencher, around| {

@@ -9,8 +9,8 @@ use keyway::map::{Cell, CellState, GridFrame, OccupancyGrid};
 use keyway::robot::Robot;
 use keyway::sense::Observation;
 use keyway_sim::sim::{
-    Action, Control, Disturbances, Motion, MovingObstacle, Participant, Run, RunRules, WayPoints,
-    World, simulate,
+    Action, Control, Disturbances, MovingObstacle, ObstacleMotion, Participant, Run, RunRules,
+    WayPoints, World, simulate,
 };
 use std::hint::black_box;
 
@@ -51,7 +51,7 @@ fn movers() -> Vec<MovingObstacle> {
         let x = 1.0 + 0.5 * f64::from(i) + if i < 10 { 0.0 } else { 17.0 };
         let ends = vec![Point::new(x, 2.0), Point::new(x, 28.0)];
         let motion = WayPoints::around(ends, 0.5 + 0.05 * f64::from(i)).unwrap();
-        MovingObstacle::new(0.25, Motion::WayPoints(motion)).unwrap()
+        MovingObstacle::new(0.25, ObstacleMotion::WayPoints(motion)).unwrap()
     };
     (0..20).map(mover).collect()
 }

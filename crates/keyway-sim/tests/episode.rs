@@ -12,8 +12,8 @@ use keyway_sim::episode::{
 };
 use keyway_sim::report::PlanOutcome;
 use keyway_sim::sim::{
-    Disturbances, ElusiveObstacle, ElusiveShape, KeyFrame, KeyFrames, LocalisationFaults, Motion,
-    MovingObstacle, Presence, Run,
+    Disturbances, ElusiveObstacle, ElusiveShape, KeyFrame, KeyFrames, LocalisationFaults,
+    MovingObstacle, ObstacleMotion, Presence, Run,
 };
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -265,7 +265,7 @@ fn who_may_wait_longer_is_not_stuck() {
     let mut lane = episode(["######", "......", "######"]);
     let frame = |t_s, x| KeyFrame { t_s, position: Point::new(x, 1.5) };
     let frames = vec![frame(0.0, 2.5), frame(30.0, 2.5), frame(38.0, 5.5)];
-    let motion = Motion::KeyFrames(KeyFrames::new(frames).unwrap());
+    let motion = ObstacleMotion::KeyFrames(KeyFrames::new(frames).unwrap());
     lane.movers = vec![MovingObstacle::new(0.45, motion).unwrap()];
     lane.robots[0].goal = Point::new(4.0, 1.5).into();
     let report = run_episode(&lane).unwrap().first();

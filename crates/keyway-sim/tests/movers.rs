@@ -8,7 +8,7 @@ use keyway_sim::episode::{
     Cycle, Episode, EpisodeObserver, EpisodeOutcome, EpisodeRobot, RobotReport, RunOptions, Start,
     run_episode, watch_episode,
 };
-use keyway_sim::sim::{KeyFrame, KeyFrames, Motion, MovingObstacle, WayPoints};
+use keyway_sim::sim::{KeyFrame, KeyFrames, MovingObstacle, ObstacleMotion, WayPoints};
 
 /// An episode from (1, 3) to (9, 3) across a hall of 10 m x 6 m.
 fn across(movers: Vec<MovingObstacle>) -> Episode {
@@ -86,7 +86,7 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
         ("ahead, slower", vec![walker([2.5, 3.02], [0.2, 0.0])]),
         ("oncoming, aside", vec![walker([9.0, 2.4], [-0.4, 0.0])]),
         ("two", vec![walker([4.0, 0.5], [0.0, 0.5]), walker([6.0, 5.5], [0.0, -0.4])]),
-        ("to and fro", vec![MovingObstacle::new(0.25, Motion::WayPoints(tofro)).unwrap()]),
+        ("to and fro", vec![MovingObstacle::new(0.25, ObstacleMotion::WayPoints(tofro)).unwrap()]),
     ];
     let mut all_waited = 0;
     for (name, movers) in cases {
@@ -125,7 +125,8 @@ fn who_crosses_comes_towards_or_goes_ahead_is_passed_or_waited_for() {
 fn who_stops_in_the_way_is_gone_around() {
     let frame = |t_s: f64, x: f64, y: f64| KeyFrame { t_s, position: Point::new(x, y) };
     let frames = KeyFrames::new(vec![frame(0.0, 5.0, 0.8), frame(5.5, 5.0, 3.0)]).unwrap();
-    let episode = across(vec![MovingObstacle::new(0.25, Motion::KeyFrames(frames)).unwrap()]);
+    let episode =
+        across(vec![MovingObstacle::new(0.25, ObstacleMotion::KeyFrames(frames)).unwrap()]);
     let Seen { report, sensed, .. } = watched(&episode);
     assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
     let run = report.run.unwrap();
@@ -154,7 +155,7 @@ fn who_comes_out_from_behind_a_post_meets_a_robot_that_stands() {
     for case in 0..49u32 {
         let [x, speed_mps] = [2.49 + 0.01 * f64::from(case % 7), 0.55 + 0.02 * f64::from(case / 7)];
         let way = [1.5, 2.85, 0.15].map(|y| Point::new(x, y)).to_vec();
-        let walker = Motion::WayPoints(WayPoints::around(way, speed_mps).unwrap());
+        let walker = ObstacleMotion::WayPoints(WayPoints::around(way, speed_mps).unwrap());
         let start = Point::new(0.5, 1.5);
         let mut episode = Episode {
             obstacles: vec![
@@ -189,7 +190,8 @@ fn in_a_lane(
         if is_free { CellState::Free } else { CellState::Occupied }
     });
     let frame = |&(t_s, x): &(f64, f64)| KeyFrame { t_s, position: Point::new(x, y) };
-    let motion = Motion::KeyFrames(KeyFrames::new(frames.iter().map(frame).collect()).unwrap());
+    let motion =
+        ObstacleMotion::KeyFrames(KeyFrames::new(frames.iter().map(frame).collect()).unwrap());
     let start = Start { position: Point::new(1.0, y), heading_rad: Some(0.0) };
     let mut episode = Episode::new(map, robot, start.position, Point::new(9.0, y));
     episode.movers = vec![MovingObstacle::new(radius_m, motion).unwrap()];

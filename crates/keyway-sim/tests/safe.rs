@@ -10,7 +10,7 @@ use keyway::map::{CellState, GridFrame, OccupancyGrid};
 use keyway::navigate::Stack;
 use keyway::robot::{Footprint, Limits, Robot};
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, Start, run_episode};
-use keyway_sim::sim::{Motion, MovingObstacle, WayPoints};
+use keyway_sim::sim::{MovingObstacle, ObstacleMotion, WayPoints};
 use proptest::prelude::*;
 
 const WIDTH_M: f64 = 6.0;
@@ -137,7 +137,7 @@ proptest! {
         let mut episode = safe_episode(room(&[]), &robot(is_long, false, delay_s), which, ends);
         let mover = |(points, speed_mps, radius_m): &(Vec<(f64, f64)>, f64, f64)| {
             let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect();
-            MovingObstacle::new(*radius_m, Motion::WayPoints(WayPoints::to_and_fro(points, *speed_mps).ok()?)).ok()
+            MovingObstacle::new(*radius_m, ObstacleMotion::WayPoints(WayPoints::to_and_fro(points, *speed_mps).ok()?)).ok()
         };
         let movers: Option<Vec<MovingObstacle>> = ways.iter().map(mover).collect();
         let Some(movers) = movers else { return Err(TestCaseError::reject("no way")) };

@@ -51,7 +51,7 @@ fn poses(robot: &Robot, field: &DistanceField) -> Vec<Pose> {
         let i = f64::from(i);
         Pose::new(3.0 + i * 0.618 % 18.0, 15.0 + 0.1 * (i * 0.7).sin(), 0.3 * (i * 1.9).sin())
     };
-    let margin_m = robot.safety_margin_m();
+    let margin_m = robot.safety_margin_or_default_m();
     let is_free =
         |pose: &Pose| robot.footprint.distance_m(*pose, &field.clearance(), 1.0) > margin_m;
     (0..1000).map(pose).filter(is_free).take(64).collect()
@@ -81,7 +81,7 @@ fn decisions(criterion: &mut Criterion) {
                     path,
                     goal_heading_rad: None,
                     remaining_m: f64::INFINITY,
-                    smoothed: None,
+                    jerk_limited: None,
                 };
                 match planner.decide(&scene, &mut DriveMemory::default(), &mut scratch) {
                     Ok(decision) => decision.evaluation,

@@ -43,7 +43,7 @@ fn warm_decisions_allocate_nothing() {
                     path: &path,
                     goal_heading_rad: None,
                     remaining_m: f64::INFINITY,
-                    smoothed: None,
+                    jerk_limited: None,
                 };
                 let decision = planner.decide(&scene, &mut memory, &mut scratch);
                 let command = decision.map_or_else(|why| why.fallback, |decision| decision.command);

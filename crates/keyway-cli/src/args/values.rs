@@ -4,7 +4,7 @@ use keyway::ConfigError;
 use keyway::geometry::{Disc, Point};
 use keyway::map::GridFrame;
 use keyway_lab::batch::Shard;
-use keyway_sim::sim::{Motion, MovingObstacle, WayPoints};
+use keyway_sim::sim::{MovingObstacle, ObstacleMotion, WayPoints};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -122,9 +122,13 @@ impl MovingArg {
     /// point.
     pub(crate) fn mover(&self, points: Vec<Point>) -> Result<MovingObstacle, ConfigError> {
         let motion = match (self.pace, &points[..]) {
-            (Pace::Velocity(velocity_mps), &[from, ..]) => Motion::Straight { from, velocity_mps },
+            (Pace::Velocity(velocity_mps), &[from, ..]) => {
+                ObstacleMotion::Straight { from, velocity_mps }
+            }
             (Pace::Velocity(_), []) => return Err(ConfigError::new("position", "is missing")),
-            (Pace::Round(speed_mps), _) => Motion::WayPoints(WayPoints::around(points, speed_mps)?),
+            (Pace::Round(speed_mps), _) => {
+                ObstacleMotion::WayPoints(WayPoints::around(points, speed_mps)?)
+            }
         };
         MovingObstacle::new(self.radius_m, motion)
     }

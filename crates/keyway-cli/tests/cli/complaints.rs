@@ -139,7 +139,7 @@ fn a_narrow_door_is_passed_near_its_middle() {
         assert!(at.yaw_rad.abs() < 0.25, "{at:?}");
     }
     let run = report.run.unwrap();
-    let margin_m = Robot::jackal().safety_margin_m();
+    let margin_m = Robot::jackal().safety_margin_or_default_m();
     assert!(run.time_s < 10.0 && run.min_clearance_m.unwrap() > margin_m - 1e-4);
 }
 

@@ -8,7 +8,7 @@ use crate::line_style::LineStyle;
 use crate::marks::{TIME_MARK_PX, hatched_disc, time_mark, time_mark_half_px};
 use crate::ticks::Ticks;
 use keyway::geometry::Point;
-use keyway_sim::sim::{Motion, MovingObstacle, TrajectoryPoint};
+use keyway_sim::sim::{MovingObstacle, ObstacleMotion, TrajectoryPoint};
 
 /// Maximum number of times that are marked in a run.
 const MOST_MOMENTS: usize = 6;
@@ -137,7 +137,7 @@ impl Layer for Movers<'_> {
 }
 
 /// Returns the trajectory of a moving obstacle up to a time, split at its jumps.
-fn ways(motion: &Motion, end_s: f64) -> Vec<Vec<Point>> {
+fn ways(motion: &ObstacleMotion, end_s: f64) -> Vec<Vec<Point>> {
     let (mut ways, mut way) = (Vec::new(), Vec::new());
     let mut next_jump_s = motion.next_jump_s(0.0);
     for step in 0..=STEPS {
@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn no_line_leads_along_a_jump() {
         let frames = [[0.0, 0.0, 0.0], [1.0, 3.0, 0.0]].map(KeyFrame::from).to_vec();
-        let motion = Motion::Spline(Spline::new(frames, 1.5).unwrap());
+        let motion = ObstacleMotion::Spline(Spline::new(frames, 1.5).unwrap());
         let ways = ways(&motion, 4.0);
         let ends: Vec<[f64; 2]> = ways.iter().map(|way| [way[0].x, way[way.len() - 1].x]).collect();
         assert_eq!(ends, [[0.0, 3.0], [0.0, 3.0], [0.0, 3.0]]);

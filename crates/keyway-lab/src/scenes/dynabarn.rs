@@ -13,7 +13,7 @@ use keyway::ConfigError;
 use keyway::geometry::Point;
 use keyway_sim::episode::{EpisodeRules, Start};
 use keyway_sim::scene_files::{GroundShape, SceneFile, UnknownObstacle};
-use keyway_sim::sim::{Arrival, KeyFrame, Motion, MovingObstacle, Spline, StandingPolygon};
+use keyway_sim::sim::{Arrival, KeyFrame, MovingObstacle, ObstacleMotion, Spline, StandingPolygon};
 use keyway_sim::worlds::GeneratedMap;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -114,7 +114,7 @@ impl DynabarnRequest {
 
 fn mover(lap: &Lap, radius_m: f64) -> Result<MovingObstacle, ConfigError> {
     let spline = Spline::new(lap.frames.clone(), lap.duration_s)?;
-    MovingObstacle::new(radius_m, Motion::Spline(spline))
+    MovingObstacle::new(radius_m, ObstacleMotion::Spline(spline))
 }
 
 /// Returns the walls: boxes of 20 m x 0.5 m in the middle of three sides of the field.

@@ -26,7 +26,7 @@ mod lane;
 
 use super::{Episode, EpisodeRobot, Start};
 use crate::report::Placed;
-use crate::sim::{Motion, MovingObstacle, WayPoints};
+use crate::sim::{MovingObstacle, ObstacleMotion, WayPoints};
 use keyway::ConfigError;
 use keyway::geometry::{Disc, Point};
 use keyway::map::{BitGrid, Cell, CellState, Clearance, GridFrame, OccupancyGrid};
@@ -285,7 +285,7 @@ impl Ground {
         }
         // A closed walk along a line: to one end, back past its start to the other end, and back.
         let motion = WayPoints::around(vec![at, to, fro], speed_mps).ok()?;
-        MovingObstacle::new(radius_m, Motion::WayPoints(motion)).ok()
+        MovingObstacle::new(radius_m, ObstacleMotion::WayPoints(motion)).ok()
     }
 
     /// Farthest position from `at` in a direction that a disc reaches without contact; `None` if it

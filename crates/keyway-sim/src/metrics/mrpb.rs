@@ -100,7 +100,9 @@ fn velocity_smoothness_mps2(samples: &[TrajectoryPoint]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, Outcome, WayPoints};
+    use crate::sim::{
+        KeyFrame, KeyFrames, MoverWay, MovingObstacle, ObstacleMotion, Outcome, WayPoints,
+    };
     use keyway::geometry::{Disc, Pose, Velocity};
     use keyway::map::OccupancyGrid;
 
@@ -153,7 +155,7 @@ mod tests {
     fn movers_are_where_they_are_then() {
         let frame = |t_s, x, y| KeyFrame { t_s, position: Point::new(x, y) };
         let frames = vec![frame(0.0, 9.0, 0.5), frame(1.0, 2.5, 3.0), frame(1.5, 9.0, 0.5)];
-        let motion = Motion::KeyFrames(KeyFrames::new(frames.clone()).unwrap());
+        let motion = ObstacleMotion::KeyFrames(KeyFrames::new(frames.clone()).unwrap());
         let among =
             |motion| world(vec![]).with_movers(vec![MovingObstacle::new(0.25, motion).unwrap()]);
         let mrpb = Mrpb::of_run(&run(&DRIVEN), &among(motion), 0.6);
@@ -164,7 +166,7 @@ mod tests {
         let course = WayPoints::around(vec![Point::new(9.0, 0.5), Point::new(9.0, 4.5)], 1.0);
         let movers = vec![MoverWay { index: 0, key_frames: frames }];
         let run = Run { movers, ..run(&DRIVEN) };
-        let world = among(Motion::GivesWay(course.unwrap()));
+        let world = among(ObstacleMotion::GivesWay(course.unwrap()));
         assert_eq!(Mrpb::of_run(&run, &world, 0.6), mrpb);
     }
 

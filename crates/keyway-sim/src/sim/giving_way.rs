@@ -1,7 +1,7 @@
 //! Obstacles that give way during a simulation.
 
 use super::social_force::{Body, add_forces};
-use super::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, WayPoints, World};
+use super::{KeyFrame, KeyFrames, MoverWay, MovingObstacle, ObstacleMotion, WayPoints, World};
 use keyway::geometry::{Disc, Point};
 use std::borrow::Cow;
 
@@ -26,7 +26,7 @@ impl GivingWay {
     /// Returns all obstacles of a world that give way, at rest at their first positions.
     pub(super) fn begin(world: &mut Cow<'_, World>) -> Vec<Self> {
         let giving_way = |(index, mover): (usize, &MovingObstacle)| {
-            let Motion::GivesWay(course) = mover.motion() else { return None };
+            let ObstacleMotion::GivesWay(course) = mover.motion() else { return None };
             let centre = course.points()[0];
             let body = Body { centre, radius_m: mover.radius_m(), velocity_mps: Point::default() };
             let course = course.clone();
@@ -36,7 +36,7 @@ impl GivingWay {
         for Self { index, body, .. } in &all {
             let begin = vec![KeyFrame { t_s: 0.0, position: body.centre }];
             let mover = &mut world.to_mut().movers_mut()[*index];
-            *mover = mover.moving(Motion::KeyFrames(KeyFrames::in_order(begin)));
+            *mover = mover.moving(ObstacleMotion::KeyFrames(KeyFrames::in_order(begin)));
         }
         all
     }
@@ -73,7 +73,7 @@ impl GivingWay {
     /// Returns the positions of all of them so far.
     pub(super) fn ways(all: &[Self], world: &World) -> Vec<MoverWay> {
         let way = |one: &Self| match world.movers()[one.index].motion() {
-            Motion::KeyFrames(frames) => {
+            ObstacleMotion::KeyFrames(frames) => {
                 Some(MoverWay { index: one.index, key_frames: frames.frames().to_vec() })
             }
             _ => None,

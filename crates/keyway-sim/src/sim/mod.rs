@@ -8,7 +8,7 @@
 //! into a stationary robot, but two robots that drive towards each other may collide.
 //!
 //! Moving obstacles follow their own path, or give way to robots and to each other
-//! ([`Motion::GivesWay`]).
+//! ([`ObstacleMotion::GivesWay`]).
 //!
 //! A participant may be disturbed ([`Disturbances`]): faulty scans, delayed, weak or inexact
 //! motors, and localisation errors. The record shows the true motion.
@@ -113,7 +113,8 @@ pub use disturbances::{ActuationFaults, Disturbances, LocalisationFaults, Sensor
 pub use drive::{SimError, simulate, simulate_on};
 pub use elusive::{ElusiveObstacle, ElusiveShape, Presence};
 pub use mover::{
-    KeyFrame, KeyFrames, Motion, MovingObstacle, RandomWalk, RandomWalkConfig, Spline, WayPoints,
+    KeyFrame, KeyFrames, MovingObstacle, ObstacleMotion, RandomWalk, RandomWalkConfig, Spline,
+    WayPoints,
 };
 pub use participant::{Action, Control, Participant};
 pub use rules::{Arrival, ReachedBy, RunRules};

@@ -1,6 +1,6 @@
 //! Record of a run.
 
-use super::{KeyFrame, KeyFrames, Motion, MovingObstacle, Obstacle, World};
+use super::{KeyFrame, KeyFrames, MovingObstacle, Obstacle, ObstacleMotion, World};
 use keyway::geometry::{Pose, Velocity};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -24,7 +24,7 @@ pub enum Outcome {
         /// began in contact.
         robot_stood: bool,
         /// True if the touched obstacle had jumped within the last cycle, so that the robot could
-        /// not have known ([`Motion::last_jump_s`](super::Motion::last_jump_s)).
+        /// not have known ([`ObstacleMotion::last_jump_s`](super::ObstacleMotion::last_jump_s)).
         jumped_onto: bool,
         /// Speed of a touched moving obstacle at the contact \[m/s\]; a speed above
         /// [`MovingObstacle::DART_MPS`](super::MovingObstacle::DART_MPS) counts as darting.
@@ -71,7 +71,7 @@ impl Run {
     }
 }
 
-/// Recorded path of an obstacle that gives way ([`Motion::GivesWay`](super::Motion::GivesWay))
+/// Recorded path of an obstacle that gives way ([`ObstacleMotion::GivesWay`](super::ObstacleMotion::GivesWay))
 /// during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MoverWay {
@@ -85,7 +85,7 @@ pub struct MoverWay {
 impl MoverWay {
     /// Returns the obstacle on this path, without giving way.
     pub fn mover(&self, of: &MovingObstacle) -> MovingObstacle {
-        of.moving(Motion::KeyFrames(KeyFrames::in_order(self.key_frames.clone())))
+        of.moving(ObstacleMotion::KeyFrames(KeyFrames::in_order(self.key_frames.clone())))
     }
 
     /// Returns the part of the path up to the end of a cycle.

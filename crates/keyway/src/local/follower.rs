@@ -206,7 +206,7 @@ mod tests {
                 path,
                 goal_heading_rad: None,
                 remaining_m: f64::INFINITY,
-                smoothed: None,
+                jerk_limited: None,
             };
             let decision = follower.decide(&scene, &mut memory, &mut Scratch::default()).unwrap();
             let limits = &follower.robot.limits;
@@ -240,7 +240,7 @@ mod tests {
             path: &path,
             goal_heading_rad: None,
             remaining_m: f64::INFINITY,
-            smoothed: None,
+            jerk_limited: None,
         };
         // At (0.3, 0.3): gamma = 2 * 0.3 / 0.18 = 10 / 3, so 1.5 rad/s are 0.45 m/s.
         let wanted = small().towards(&scene, Point::new(0.3, 0.3), 9.0);

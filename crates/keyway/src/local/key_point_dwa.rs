@@ -394,7 +394,7 @@ mod tests {
                 path,
                 goal_heading_rad: None,
                 remaining_m: f64::INFINITY,
-                smoothed: None,
+                jerk_limited: None,
             };
             let (memory, scratch) = (&mut DriveMemory::default(), &mut Scratch::default());
             let chosen = planner.decide(&scene, memory, scratch).unwrap().evaluation.chosen;

@@ -27,7 +27,7 @@
 //!     path: &path,
 //!     goal_heading_rad: None,
 //!     remaining_m: f64::INFINITY,
-//!     smoothed: None,
+//!     jerk_limited: None,
 //! };
 //! let decision = planner.decide(&scene, &mut memory, &mut scratch)?;
 //! assert!(decision.command.v > 0.0 && decision.command.omega.abs() < 1e-9);
@@ -44,6 +44,7 @@ mod dynamic_window;
 mod explanation;
 mod follower;
 mod guided_dwa;
+mod jerk_limited;
 mod key_point_dwa;
 mod mover_rule;
 mod parameters;
@@ -51,7 +52,6 @@ mod planner;
 mod rear;
 mod remedies;
 mod scene;
-mod smoothed;
 mod space_time;
 mod stop_rule;
 mod terms;
@@ -67,10 +67,10 @@ pub use dynamic_window::{
 pub use explanation::{Change, Explanation, Fate, JudgedCandidate, Remedy, ScoredCandidate};
 pub use follower::{Follower, FollowerConfig};
 pub use guided_dwa::{DetourConfig, GuidedDwa, GuidedDwaConfig, GuidedWeights};
+pub use jerk_limited::JerkLimited;
 pub use key_point_dwa::{KeyPointDwa, KeyPointDwaConfig, KeyPointWeights, SpeedWeight};
 pub(crate) use mover_rule::MoverRule;
 pub use planner::{Course, Detour, DriveMemory, LocalPlanner, OwnMemory, Scratch};
 pub use scene::Scene;
-pub use smoothed::Smoothed;
 pub use space_time::{SpaceTime, SpaceTimeConfig};
 pub use stop_rule::{Gated, Refusal, RefusalCounts, StopRule, StopRuleConfig, Surroundings};

@@ -1,6 +1,6 @@
 //! The input of one decision.
 
-use super::Smoothed;
+use super::JerkLimited;
 use crate::geometry::{Disc, Point, Polyline, Pose, Velocity};
 use crate::map::{BitGrid, DistanceField};
 use crate::sense::{Mover, SeenCells};
@@ -38,5 +38,5 @@ pub struct Scene<'a> {
     pub remaining_m: f64,
     /// The robot itself, if its commands are averaged. `pose` and `velocity` are then those of
     /// its reference, for which a local planner decides.
-    pub smoothed: Option<Smoothed<'a>>,
+    pub jerk_limited: Option<JerkLimited<'a>>,
 }

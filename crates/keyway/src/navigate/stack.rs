@@ -184,7 +184,8 @@ impl ControllerConfig {
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
-            least_clearance_m: robot.footprint.inscribed_radius_m() + robot.safety_margin_m(),
+            least_clearance_m: robot.footprint.inscribed_radius_m()
+                + robot.safety_margin_or_default_m(),
             start_error_m: Self::START_ERROR_M,
             watch_route: true,
             go_around: true,

@@ -2,7 +2,7 @@
 
 use super::met::Met;
 use super::mode::Mode;
-use super::recovery::RecoveryOrder;
+use super::recovery::RecoveryCursor;
 use super::route::{Router, check_goal_heading};
 use super::start::StartTooNear;
 use super::walked_ground::Hold;
@@ -47,7 +47,7 @@ pub(super) struct Task {
     /// Moving obstacle that the robot has met.
     #[serde(default)]
     pub(super) met: Met,
-    pub(super) order: RecoveryOrder,
+    pub(super) order: RecoveryCursor,
     /// Duration of the last wait between two attempts at a route \[s\].
     pub(super) waited_s: f64,
     /// Position from which no manoeuvre was found that leads beyond the point of no return: near
@@ -154,7 +154,7 @@ impl Task {
             watch: Watch::NEW,
             hold: Hold::default(),
             met: Met::default(),
-            order: RecoveryOrder::default(),
+            order: RecoveryCursor::default(),
             waited_s: 0.0,
             led_from: None,
             too_near,

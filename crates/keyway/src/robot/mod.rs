@@ -131,12 +131,12 @@ impl Robot {
     /// the safety margin if that is larger.
     pub fn preferred_clearance_m(&self) -> f64 {
         let cycle_m = self.limits.v_max_mps * self.cycle_s;
-        self.footprint.circumscribed_radius_m() + cycle_m.max(self.safety_margin_m())
+        self.footprint.circumscribed_radius_m() + cycle_m.max(self.safety_margin_or_default_m())
     }
 
     /// The safety margin \[m\]: that of the robot, or a tenth of the distance driven in a cycle at
     /// full speed.
-    pub fn safety_margin_m(&self) -> f64 {
+    pub fn safety_margin_or_default_m(&self) -> f64 {
         self.safety_margin_m.unwrap_or(0.1 * self.limits.v_max_mps * self.cycle_s)
     }
 

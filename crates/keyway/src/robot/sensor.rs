@@ -189,7 +189,8 @@ impl Robot {
         let react_s =
             self.scan_period_s().max(self.cycle_s) + self.actuation_delay_s + 1.5 * self.cycle_s;
         let react_s = react_s + self.smoothing_lag_s();
-        let free_m = self.sees_ahead_m() - self.footprint.foremost_m() - self.safety_margin_m();
+        let free_m =
+            self.sees_ahead_m() - self.footprint.foremost_m() - self.safety_margin_or_default_m();
         let lost_mps = self.limits.deceleration_mps2 * react_s;
         let square = lost_mps * lost_mps + 2.0 * self.limits.deceleration_mps2 * free_m.max(0.0);
         square.sqrt() - lost_mps
@@ -250,7 +251,10 @@ mod tests {
         let v = robot.sight_mps();
         let (brakes_mps2, react_s) = (robot.limits.deceleration_mps2, 0.25);
         let needs_m = 0.5 * v * v / brakes_mps2 + v * react_s;
-        assert!((needs_m - (far_m - 0.18 - robot.safety_margin_m())).abs() < 1e-12, "{v}");
+        assert!(
+            (needs_m - (far_m - 0.18 - robot.safety_margin_or_default_m())).abs() < 1e-12,
+            "{v}"
+        );
     }
 
     #[test]

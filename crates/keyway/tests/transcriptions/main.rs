@@ -143,7 +143,7 @@ fn run(
             path,
             goal_heading_rad: None,
             remaining_m: f64::INFINITY,
-            smoothed: None,
+            jerk_limited: None,
         };
         let decision = planner.decide(&scene, &mut memory, &mut scratch);
         let wanted = transcription(world, state);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::episode::EpisodeRules;
 use crate::scene_files::UnknownDisc;
-use crate::sim::{Arrival, KeyFrame, KeyFrames, Motion, ReachedBy};
+use crate::sim::{Arrival, KeyFrame, KeyFrames, ObstacleMotion, ReachedBy};
 use keyway::geometry::Disc;
 use keyway::map::formats::map_from_bytes;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -19,7 +19,7 @@ const MOVING: &str = "[[moving]]\nradius_m = 0.25\nkey_frames = [[0, 1, 2], [4, 
 
 fn mover() -> MovingObstacle {
     let frames = [[0.0, 1.0, 2.0], [4.0, 3.0, 2.0]].map(KeyFrame::from).to_vec();
-    MovingObstacle::new(0.25, Motion::KeyFrames(KeyFrames::new(frames).unwrap())).unwrap()
+    MovingObstacle::new(0.25, ObstacleMotion::KeyFrames(KeyFrames::new(frames).unwrap())).unwrap()
 }
 
 #[test]

@@ -28,10 +28,10 @@ use serde::{Deserialize, Serialize};
 ///
 /// ```
 /// use keyway::geometry::Point;
-/// use keyway_sim::sim::{Motion, MovingObstacle, WayPoints};
+/// use keyway_sim::sim::{ObstacleMotion, MovingObstacle, WayPoints};
 ///
 /// let corners = vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0), Point::new(4.0, 1.0)];
-/// let motion = Motion::WayPoints(WayPoints::to_and_fro(corners, 0.5)?);
+/// let motion = ObstacleMotion::WayPoints(WayPoints::to_and_fro(corners, 0.5)?);
 /// let mover = MovingObstacle::new(0.25, motion)?;
 /// assert_eq!(mover.at(9.0).centre, Point::new(4.0, 0.5));
 /// assert_eq!(mover.at(12.0).centre, Point::new(4.0, 0.0));
@@ -42,14 +42,14 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(with = "MoverTable"))]
 pub struct MovingObstacle {
     radius_m: f64,
-    motion: Motion,
+    motion: ObstacleMotion,
 }
 
 /// Motion of an obstacle: its position at any time, bounds of its speed, and the times of its
 /// jumps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Motion {
+pub enum ObstacleMotion {
     /// Constant velocity, indefinitely.
     Straight {
         /// Position at time 0 \[m\].
@@ -72,7 +72,7 @@ pub enum Motion {
     GivesWay(WayPoints),
 }
 
-impl Motion {
+impl ObstacleMotion {
     /// Position at a time \[m\]; at the instant of a jump, the position after it.
     pub fn position(&self, t_s: f64) -> Point {
         match self {
@@ -133,9 +133,9 @@ impl MovingObstacle {
     /// # Errors
     /// Returns an error if the radius is negative, the radius or the position is not finite, or
     /// the velocity is higher than [`Self::FASTEST_MPS`].
-    pub fn new(radius_m: f64, motion: Motion) -> Result<Self, ConfigError> {
+    pub fn new(radius_m: f64, motion: ObstacleMotion) -> Result<Self, ConfigError> {
         ConfigError::unless_not_negative("radius_m", radius_m)?;
-        if let Motion::Straight { from, velocity_mps } = &motion {
+        if let ObstacleMotion::Straight { from, velocity_mps } = &motion {
             unless_finite("position", *from)?;
             unless_finite("velocity_mps", *velocity_mps)?;
             unless_usable_speed("velocity_mps", velocity_mps.norm())?;
@@ -148,19 +148,19 @@ impl MovingObstacle {
     /// # Errors
     /// Those of [`Self::new`].
     pub fn straight(from: Point, radius_m: f64, velocity_mps: Point) -> Result<Self, ConfigError> {
-        Self::new(radius_m, Motion::Straight { from, velocity_mps })
+        Self::new(radius_m, ObstacleMotion::Straight { from, velocity_mps })
     }
 
     /// True for a random walk without a seed of its own.
     pub const fn needs_seed(&self) -> bool {
-        matches!(&self.motion, Motion::RandomWalk(walk) if walk.config().seed.is_none())
+        matches!(&self.motion, ObstacleMotion::RandomWalk(walk) if walk.config().seed.is_none())
     }
 
     /// Returns the obstacle. If it [needs a seed](Self::needs_seed), it gets one derived from
     /// another seed and the `index` of the obstacle.
     #[must_use]
     pub fn seeded(self, seed: u64, index: u64) -> Self {
-        let Motion::RandomWalk(walk) = &self.motion else { return self };
+        let ObstacleMotion::RandomWalk(walk) = &self.motion else { return self };
         if !self.needs_seed() {
             return self;
         }
@@ -169,7 +169,7 @@ impl MovingObstacle {
         let config = RandomWalkConfig { seed: Some(own), ..walk.config().clone() };
         // Only the random choices change, so the configuration stays valid.
         let walk = RandomWalk::new(config).unwrap_or_else(|_| walk.clone());
-        Self { motion: Motion::RandomWalk(walk), ..self }
+        Self { motion: ObstacleMotion::RandomWalk(walk), ..self }
     }
 
     /// Radius \[m\].
@@ -178,18 +178,18 @@ impl MovingObstacle {
     }
 
     /// Motion of the obstacle.
-    pub const fn motion(&self) -> &Motion {
+    pub const fn motion(&self) -> &ObstacleMotion {
         &self.motion
     }
 
     /// Returns the obstacle with another motion.
-    pub(super) const fn moving(&self, motion: Motion) -> Self {
+    pub(super) const fn moving(&self, motion: ObstacleMotion) -> Self {
         Self { radius_m: self.radius_m, motion }
     }
 
     /// Appends a key frame to an obstacle that moves along key frames.
     pub(super) fn goes_on(&mut self, frame: KeyFrame) {
-        if let Motion::KeyFrames(frames) = &mut self.motion {
+        if let ObstacleMotion::KeyFrames(frames) = &mut self.motion {
             frames.push(frame);
         }
     }

@@ -1,7 +1,8 @@
 //! Representation of a moving obstacle in files and reports.
 
 use super::{
-    KeyFrame, KeyFrames, Motion, MovingObstacle, RandomWalk, RandomWalkConfig, Spline, WayPoints,
+    KeyFrame, KeyFrames, MovingObstacle, ObstacleMotion, RandomWalk, RandomWalkConfig, Spline,
+    WayPoints,
 };
 use keyway::ConfigError;
 use keyway::geometry::Point;
@@ -79,7 +80,7 @@ impl TryFrom<MoverTable> for MovingObstacle {
 }
 
 impl MoverTable {
-    fn motion(self) -> Result<Motion, ConfigError> {
+    fn motion(self) -> Result<ObstacleMotion, ConfigError> {
         // Fields of a second motion are an error.
         let given: Vec<&str> = self
             .fields()
@@ -90,13 +91,13 @@ impl MoverTable {
             Self { position: Some(from), velocity_mps: Some(velocity_mps), .. }
                 if given.len() == 2 =>
             {
-                Ok(Motion::Straight { from, velocity_mps })
+                Ok(ObstacleMotion::Straight { from, velocity_mps })
             }
             Self { key_frames: Some(frames), .. } if given.len() == 1 => {
-                KeyFrames::new(frames).map(Motion::KeyFrames)
+                KeyFrames::new(frames).map(ObstacleMotion::KeyFrames)
             }
             Self { spline: Some(frames), duration_s: Some(duration_s), .. } if given.len() == 2 => {
-                Spline::new(frames, duration_s).map(Motion::Spline)
+                Spline::new(frames, duration_s).map(ObstacleMotion::Spline)
             }
             Self {
                 way_points: Some(points),
@@ -107,11 +108,12 @@ impl MoverTable {
             } if given.len() == 2 => {
                 let to_and_fro = to_and_fro.unwrap_or_default();
                 let gives_way = gives_way.unwrap_or_default();
-                let motion = if gives_way { Motion::GivesWay } else { Motion::WayPoints };
+                let motion =
+                    if gives_way { ObstacleMotion::GivesWay } else { ObstacleMotion::WayPoints };
                 WayPoints::new(points, speed_mps, to_and_fro).map(motion)
             }
             Self { random_walk: Some(config), .. } if given.len() == 1 => RandomWalk::new(config)
-                .map(Motion::RandomWalk)
+                .map(ObstacleMotion::RandomWalk)
                 .map_err(|error| error.within("random_walk")),
             _ => Err(not_one_motion(&given)),
         }
@@ -161,22 +163,22 @@ impl From<MovingObstacle> for MoverTable {
             ..radius_only
         };
         match motion {
-            Motion::Straight { from, velocity_mps } => {
+            ObstacleMotion::Straight { from, velocity_mps } => {
                 Self { position: Some(from), velocity_mps: Some(velocity_mps), ..radius_only }
             }
-            Motion::KeyFrames(frames) => {
+            ObstacleMotion::KeyFrames(frames) => {
                 Self { key_frames: Some(frames.frames().to_vec()), ..radius_only }
             }
-            Motion::Spline(spline) => Self {
+            ObstacleMotion::Spline(spline) => Self {
                 spline: Some(spline.frames().to_vec()),
                 duration_s: Some(spline.duration_s()),
                 ..radius_only
             },
-            Motion::WayPoints(points) => along(&points, radius_only),
-            Motion::GivesWay(points) => {
+            ObstacleMotion::WayPoints(points) => along(&points, radius_only),
+            ObstacleMotion::GivesWay(points) => {
                 Self { gives_way: Some(true), ..along(&points, radius_only) }
             }
-            Motion::RandomWalk(walk) => {
+            ObstacleMotion::RandomWalk(walk) => {
                 Self { random_walk: Some(walk.config().clone()), ..radius_only }
             }
         }

@@ -9,7 +9,7 @@ fn place() -> impl Strategy<Value = Point> {
 
 /// A spline near the origin at up to 6 m/s; its lap may end at its first position, or later than
 /// its last key frame.
-fn spline() -> impl Strategy<Value = Motion> {
+fn spline() -> impl Strategy<Value = ObstacleMotion> {
     let frames = prop::collection::vec((0.1..1.2f64, place()), 2..7);
     (frames, 0.0..0.5f64, any::<bool>(), prop_oneof![Just(0.0), 0.0..0.5f64]).prop_map(
         |(steps, first_s, is_closed, rest_s)| {
@@ -33,12 +33,12 @@ fn spline() -> impl Strategy<Value = Motion> {
                 frame.position = frame.position * scale;
             }
             let duration_s = (frames[last].t_s + rest_s).max(Spline::SHORTEST_S);
-            Motion::Spline(Spline::new(frames, duration_s).unwrap())
+            ObstacleMotion::Spline(Spline::new(frames, duration_s).unwrap())
         },
     )
 }
 
-fn random_walk() -> impl Strategy<Value = Motion> {
+fn random_walk() -> impl Strategy<Value = ObstacleMotion> {
     let area = (prop::array::uniform2((-1.5..1.4f64, 0.001..1.0f64)), (0.0..=1.0f64, 0.0..=1.0f64));
     let speeds = (0.0..1.0f64, 0.0..5.0f64);
     (area, speeds, (0.1..0.5f64, 0.0..0.5f64), 0..u64::from(u32::MAX)).prop_map(
@@ -48,15 +48,15 @@ fn random_walk() -> impl Strategy<Value = Motion> {
             let position = Point::new(position.x.min(area[1].x), position.y.min(area[1].y));
             let (speed_mps, leg_s) = ([speed.0, speed.0 + speed.1], [leg.0, leg.0 + leg.1]);
             let config = RandomWalkConfig { position, area, speed_mps, leg_s, seed: Some(seed) };
-            Motion::RandomWalk(RandomWalk::new(config).unwrap())
+            ObstacleMotion::RandomWalk(RandomWalk::new(config).unwrap())
         },
     )
 }
 
 /// An obstacle of any motion near the origin, at up to 6 m/s.
 pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = MovingObstacle> {
-    let straight =
-        (place(), place()).prop_map(|(from, velocity_mps)| Motion::Straight { from, velocity_mps });
+    let straight = (place(), place())
+        .prop_map(|(from, velocity_mps)| ObstacleMotion::Straight { from, velocity_mps });
     let frames = (prop::collection::vec((0.5..1.2f64, place()), 1..7), 0.0..1.0f64);
     let key_frames = frames.prop_map(|(steps, first_s)| {
         let mut t_s = first_s;
@@ -64,11 +64,11 @@ pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = MovingObstacle>
             t_s += step_s;
             KeyFrame { t_s, position }
         });
-        Motion::KeyFrames(KeyFrames::new(frames.collect()).unwrap())
+        ObstacleMotion::KeyFrames(KeyFrames::new(frames.collect()).unwrap())
     });
     let way_points = (prop::collection::vec(place(), 2..6), 0.1..6.0f64, any::<bool>()).prop_map(
         |(points, speed_mps, to_and_fro)| {
-            Motion::WayPoints(WayPoints::new(points, speed_mps, to_and_fro).unwrap())
+            ObstacleMotion::WayPoints(WayPoints::new(points, speed_mps, to_and_fro).unwrap())
         },
     );
     let motion = prop_oneof![straight, key_frames, spline(), way_points, random_walk()];
@@ -79,10 +79,10 @@ pub(in crate::sim) fn moving_obstacle() -> impl Strategy<Value = MovingObstacle>
 /// Position of an obstacle, found by following its motion from the beginning.
 pub(in crate::sim) fn place_of(mover: &MovingObstacle, t_s: f64) -> Point {
     match mover.motion() {
-        Motion::Straight { from, velocity_mps } => {
+        ObstacleMotion::Straight { from, velocity_mps } => {
             Point::new(from.x + velocity_mps.x * t_s, from.y + velocity_mps.y * t_s)
         }
-        Motion::KeyFrames(frames) => {
+        ObstacleMotion::KeyFrames(frames) => {
             let frames = frames.frames();
             let mut at = frames[0].position;
             for pair in frames.windows(2) {
@@ -92,10 +92,10 @@ pub(in crate::sim) fn place_of(mover: &MovingObstacle, t_s: f64) -> Point {
             }
             at
         }
-        Motion::GivesWay(way) => way.points()[0],
-        Motion::Spline(spline) => place_on_spline(spline, t_s),
-        Motion::RandomWalk(walk) => place_on_walk(walk.config(), t_s),
-        Motion::WayPoints(way) => {
+        ObstacleMotion::GivesWay(way) => way.points()[0],
+        ObstacleMotion::Spline(spline) => place_on_spline(spline, t_s),
+        ObstacleMotion::RandomWalk(walk) => place_on_walk(walk.config(), t_s),
+        ObstacleMotion::WayPoints(way) => {
             let points = way.points();
             let last = points.len() - 1;
             let (mut at, mut ahead, mut left_m) = (0, true, way.speed_mps() * t_s);
@@ -220,7 +220,7 @@ proptest! {
         // few steps.
         let (a, b) = (from_s + long_s * part.0.min(part.1), from_s + long_s * part.0.max(part.1));
         prop_assert!(mover.motion().speed_bound_mps(a, b) <= bound_mps * (1.0 + 1e-9) + 1e-12);
-        if let Motion::KeyFrames(frames) = mover.motion() {
+        if let ObstacleMotion::KeyFrames(frames) = mover.motion() {
             let is_inside = |t_s: f64| t_s > from_s - step_s && t_s < from_s + long_s + step_s;
             if !frames.frames().iter().any(|frame| is_inside(frame.t_s)) {
                 prop_assert!(fastest_mps >= bound_mps - 1e-6, "{fastest_mps} {bound_mps}");

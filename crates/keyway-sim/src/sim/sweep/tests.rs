@@ -1,7 +1,7 @@
 use super::*;
 use crate::sim::mover::{moving_obstacle, place_of};
 use crate::sim::test_shapes::{grid_of, star};
-use crate::sim::{KeyFrame, Motion, MovingObstacle, Spline, StandingPolygon};
+use crate::sim::{KeyFrame, MovingObstacle, ObstacleMotion, Spline, StandingPolygon};
 use keyway::geometry::{Disc, Point, Pose, Segment, Velocity, holds_point, outline};
 use keyway::map::{Cell, CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
 use proptest::prelude::*;
@@ -289,7 +289,7 @@ proptest! {
 /// An obstacle that moves aside from (x, 0), and again in each lap of 0.45 s.
 fn comes_again(x: f64) -> MovingObstacle {
     let frames = [[0.0, x, 0.0], [0.4, x, 5.0]].map(KeyFrame::from).to_vec();
-    MovingObstacle::new(0.1, Motion::Spline(Spline::new(frames, 0.45).unwrap())).unwrap()
+    MovingObstacle::new(0.1, ObstacleMotion::Spline(Spline::new(frames, 0.45).unwrap())).unwrap()
 }
 
 #[test]
@@ -297,8 +297,8 @@ fn a_jump_is_no_way() {
     // The jump passes over the robot, which a continuous motion would hit.
     let frames = [[0.0, -2.0, 0.0], [0.1, -2.0, 0.5], [0.2, 2.0, 0.5], [0.3, 2.0, 0.0]];
     let frames = frames.map(|[t_s, x, y]| KeyFrame::from([t_s, x, y + 3.0 * t_s])).to_vec();
-    let mover =
-        MovingObstacle::new(0.1, Motion::Spline(Spline::new(frames, 0.3).unwrap())).unwrap();
+    let mover = MovingObstacle::new(0.1, ObstacleMotion::Spline(Spline::new(frames, 0.3).unwrap()))
+        .unwrap();
     let footprint = Footprint::circle(0.2).unwrap();
     let motion = CycleMotion::standing(Pose::default(), 0.05);
     let robot = Moving { footprint: &footprint, motion: &motion };
@@ -340,7 +340,7 @@ fn contact_by_a_jump_is_at_its_instant() {
     // An obstacle that has been stationary there for longer than a cycle did not just jump.
     let standing = [[0.0, 2.25, 0.0], [0.3, 2.25, 0.0], [0.4, 2.25, 5.0]].map(KeyFrame::from);
     let standing = Spline::new(standing.to_vec(), 0.5).unwrap();
-    let mover = MovingObstacle::new(0.1, Motion::Spline(standing)).unwrap();
+    let mover = MovingObstacle::new(0.1, ObstacleMotion::Spline(standing)).unwrap();
     let motion = CycleMotion::standing(start, 0.1);
     let robot = Moving { footprint: &footprint, motion: &motion };
     let jumped = |start_s, place| MoverSweep { mover: &mover, robot, start_s }.jumped_before(place);

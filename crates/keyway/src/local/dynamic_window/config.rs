@@ -82,7 +82,7 @@ impl WindowConfig {
     /// - `admissible`: every rollout without contact, as the braking motion is part of it;
     /// - `distance_cap_m`: the stopping distance
     ///   ([`Limits::stop_m`](crate::robot::Limits::stop_m));
-    /// - `safety_margin_m`: [`Robot::safety_margin_m`].
+    /// - `safety_margin_m`: [`Robot::safety_margin_or_default_m`].
     pub fn for_robot(robot: &Robot) -> Self {
         let limits = &robot.limits;
         let cycle_s = robot.cycle_s;
@@ -104,7 +104,7 @@ impl WindowConfig {
             stopping_distance_at: DistanceAt::Trajectory,
             distance_at: DistanceAt::Trajectory,
             distance_cap_m: limits.stop_m(),
-            safety_margin_m: robot.safety_margin_m(),
+            safety_margin_m: robot.safety_margin_or_default_m(),
         }
     }
 

@@ -6,7 +6,7 @@
 //! ([`NearObstacles::meets`]).
 
 use super::counting::Counting;
-use super::motion::Motion;
+use super::motion::TurnRatePoses;
 use crate::map::{Core, NearObstacles, Placement, Sweep, Turned};
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use std::ops::Range;
 #[derive(Debug)]
 pub(super) struct Contacts<'w, 'a> {
     pub(super) counting: &'w Counting,
-    pub(super) motion: &'w Motion,
+    pub(super) motion: &'w TurnRatePoses,
     pub(super) surroundings: &'w mut NearObstacles<'a>,
     pub(super) core: &'w Core<'w>,
     pub(super) all_mps: &'w [f64],

@@ -1,6 +1,6 @@
 //! Thresholds of contact and nearness. All lengths are in cells.
 
-use super::motion::Motion;
+use super::motion::TurnRatePoses;
 use crate::map::NearObstacles;
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ impl Counting {
     /// count.
     pub(super) fn near_poses(
         &self,
-        motion: &Motion,
+        motion: &TurnRatePoses,
         surroundings: &NearObstacles<'_>,
         ends_mps: [f64; 2],
     ) -> Range<usize> {

@@ -35,7 +35,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity) -> Scene<'_>
         path: &NO_PATH,
         goal_heading_rad: None,
         remaining_m: f64::INFINITY,
-        smoothed: None,
+        jerk_limited: None,
     }
 }
 

@@ -58,7 +58,7 @@ impl Judged {
 
 /// The poses of one turn rate, beginning with the present one.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Motion {
+pub(super) struct TurnRatePoses {
     places: Vec<Place>,
     /// The core at each of them.
     turned: Vec<Turned>,
@@ -200,7 +200,7 @@ fn chord(turned_rad: f64) -> f64 {
     if half.abs() < 1e-6 { 1.0 - half * half / 6.0 } else { libm::sin(half) / half }
 }
 
-impl Motion {
+impl TurnRatePoses {
     /// Fills in the poses of another turn rate, from a position on the grid with the direction
     /// ahead; allocates nothing once it is warm. If nothing is near, only the poses up to the
     /// comparison with the guide point are needed.

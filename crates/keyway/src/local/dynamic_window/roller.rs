@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::contacts::Contacts;
 use super::counting::Counting;
-use super::motion::{Motion, Timing};
+use super::motion::{Timing, TurnRatePoses};
 use super::rollout::DistanceAt;
 use super::rollouts::Rollouts;
 use super::speeds::{Bounds, Speeds};
@@ -30,7 +30,7 @@ pub(super) struct Roller<'a> {
 pub(super) struct RollMemory {
     near: NearBoxes,
     turned: Turned,
-    motion: Motion,
+    motion: TurnRatePoses,
     /// The speeds with a certain contact.
     touching: Vec<bool>,
     bounds: Bounds,

@@ -157,7 +157,7 @@ proptest! {
             && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > 1e-3);
         let velocity = Velocity::new(moving.0, moving.1);
         let path = Polyline::default();
-        let scene = Scene { obstacles: &world, sensed: &obstacles, seen: crate::sense::SeenCells::ANYWHERE, movers: &[], walked: &[], pose, velocity, guide: place, path: &path, goal_heading_rad: None, remaining_m: f64::INFINITY, smoothed: None };
+        let scene = Scene { obstacles: &world, sensed: &obstacles, seen: crate::sense::SeenCells::ANYWHERE, movers: &[], walked: &[], pose, velocity, guide: place, path: &path, goal_heading_rad: None, remaining_m: f64::INFINITY, jerk_limited: None };
         let mut shrunk = Vec::new();
         let roller = window.roller(&scene, &mut shrunk);
         let mut lattice = Lattice::default();
@@ -235,7 +235,7 @@ fn assert_distances_are_exact(
         path: &Polyline::default(),
         goal_heading_rad: None,
         remaining_m: f64::INFINITY,
-        smoothed: None,
+        jerk_limited: None,
     };
     let mut shrunk = Vec::new();
     let roller = window.roller(&scene, &mut shrunk);
@@ -310,7 +310,7 @@ fn a_warm_cycle_allocates_nothing() {
                 path: &path,
                 goal_heading_rad: None,
                 remaining_m: f64::INFINITY,
-                smoothed: None,
+                jerk_limited: None,
             };
             window
                 .decide(&scene, &mut scratch, &weighing, |velocity, _| [TermValue::of(velocity.v)])

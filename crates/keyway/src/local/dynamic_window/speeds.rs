@@ -9,7 +9,7 @@
 //! lengths are in cells.
 
 use super::counting::Counting;
-use super::motion::{Motion, Timing};
+use super::motion::{Timing, TurnRatePoses};
 use super::stretch::Stretch;
 use crate::geometry::{Pose, Velocity};
 use crate::map::{Apart, Core, GridFrame, Line, NearObstacles, Placement, Sweep, Turned, on_grid};
@@ -79,7 +79,7 @@ pub(super) struct Speeds<'w, 'a> {
     pub(super) frame: &'w GridFrame,
     pub(super) counting: &'w Counting,
     pub(super) timing: &'w Timing,
-    pub(super) motion: &'w Motion,
+    pub(super) motion: &'w TurnRatePoses,
     pub(super) surroundings: &'w mut NearObstacles<'a>,
     pub(super) bounds: &'w mut Bounds,
     pub(super) all_mps: &'w [f64],

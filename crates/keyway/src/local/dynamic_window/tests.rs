@@ -28,7 +28,7 @@ fn scene(obstacles: &DistanceField, pose: Pose, velocity: Velocity, guide: [f64;
         path: &NO_PATH,
         goal_heading_rad: None,
         remaining_m: f64::INFINITY,
-        smoothed: None,
+        jerk_limited: None,
     }
 }
 
@@ -181,7 +181,8 @@ fn touches_nothing(
     let dwa = Dwa::new(config, robot.clone()).unwrap();
     prop_assume!(
         robot.footprint.is_free(pose, world)
-            && robot.footprint.distance_m(pose, &world.clearance(), 1.0) > robot.safety_margin_m()
+            && robot.footprint.distance_m(pose, &world.clearance(), 1.0)
+                > robot.safety_margin_or_default_m()
     );
     let mut velocity = Velocity::ZERO;
     for guide in guides {

@@ -67,7 +67,7 @@ impl DetourConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `look_ahead_m`: [`Robot::decision_reach_m`];
-    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_m`]: the robot can
+    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_or_default_m`]: the robot can
     ///   turn with that clearance;
     /// - `reached_m`: the inscribed radius, but at least one cycle of driving: the footprint
     ///   covers the point.
@@ -75,7 +75,8 @@ impl DetourConfig {
         let cycle_m = robot.limits.v_max_mps * robot.cycle_s;
         Self {
             look_ahead_m: robot.decision_reach_m(),
-            clearance_m: robot.footprint.circumscribed_radius_m() + robot.safety_margin_m(),
+            clearance_m: robot.footprint.circumscribed_radius_m()
+                + robot.safety_margin_or_default_m(),
             reached_m: robot.footprint.inscribed_radius_m().max(cycle_m),
         }
     }

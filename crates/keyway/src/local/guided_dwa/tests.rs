@@ -37,7 +37,7 @@ impl World {
             path,
             goal_heading_rad: None,
             remaining_m: f64::INFINITY,
-            smoothed: None,
+            jerk_limited: None,
         }
     }
 

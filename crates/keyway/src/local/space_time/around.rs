@@ -78,7 +78,7 @@ impl SpaceTime {
         (lattice, end, turning_m): (Lattice, WayEnd, f64),
     ) {
         let Around { room, cost_to_go, blocked_headings, pose_cost, .. } = around;
-        let (frame, margin_m) = (scene.obstacles.frame(), self.robot.safety_margin_m());
+        let (frame, margin_m) = (scene.obstacles.frame(), self.robot.safety_margin_or_default_m());
         blocked_headings.fit(&self.robot.footprint, margin_m, frame.resolution_m());
         let robot = local(frame, scene.pose.point());
         let ground = Ground {
@@ -95,7 +95,7 @@ impl SpaceTime {
     }
 
     fn weighing(&self) -> Weighing {
-        let margin_m = self.robot.safety_margin_m();
+        let margin_m = self.robot.safety_margin_or_default_m();
         let turning_m = self.outline.circumscribed_m + margin_m;
         Weighing {
             blocked_m: self.outline.inscribed_m + margin_m,

@@ -283,7 +283,7 @@ impl SpaceTime {
         let start = State { at, ahead, velocity: scene.velocity, after_s: 0.0 };
         let SpaceTimeConfig { comfortable_m, discomfort, steering, jerk, .. } = self.config;
         let exact = Exact { footprint: &self.robot.footprint, obstacles: scene.obstacles };
-        let (margin_m, around_m) = (self.robot.safety_margin_m(), (&around.room, exact));
+        let (margin_m, around_m) = (self.robot.safety_margin_or_default_m(), (&around.room, exact));
         let now_m = self.outline.exact_room_m(around_m, (at, ahead), (margin_m, comfortable_m));
         let [nearer, slow] = Self::NEARER;
         let is_slow = scene.velocity.v.abs() <= slow * self.robot.limits.v_max_mps;

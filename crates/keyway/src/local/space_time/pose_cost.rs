@@ -19,7 +19,7 @@ use super::cost_to_go::CostToGo;
 use super::fitting::{Fitting, Ground};
 use super::lattice::Lattice;
 use super::near::Near;
-use super::pose_times::{HEADING_RAD, HEADINGS, Motions, PoseTimes, STEP_TICKS, WayEnd};
+use super::pose_times::{HEADING_RAD, HEADINGS, MotionTicks, PoseTimes, STEP_TICKS, WayEnd};
 use crate::geometry::Point;
 use crate::robot::Limits;
 
@@ -66,7 +66,7 @@ impl PoseCost {
         near.collect(lattice, &self.way, 2.0 * ground.turning_m);
         fitting.begin(near);
         *tick_s = lattice.spacing_m / (STEP_TICKS * driven.limits.v_max_mps);
-        let motions = Motions::new(driven.limits, driven.can_reverse, *tick_s);
+        let motions = MotionTicks::new(driven.limits, driven.can_reverse, *tick_s);
         times.fill((near, fitting), (room_m, ground), &motions, end);
         self.most_s = f64::from(times.longest()) * *tick_s;
         self.is_active = true;

@@ -105,7 +105,7 @@ impl PoseTimes {
         &mut self,
         (near, fitting): (&Near, &mut Fitting),
         (room_m, ground): (impl Fn(Point) -> f64, &Ground<'_>),
-        motions: &Motions,
+        motions: &MotionTicks,
         end: &WayEnd,
     ) {
         self.grow_places(near, end.at, |number| {
@@ -159,7 +159,7 @@ impl PoseTimes {
     }
 
     /// Computes the times of poses.
-    fn grow_poses(&mut self, near: &Near, fitting: &Fitting, motions: &Motions, end: &WayEnd) {
+    fn grow_poses(&mut self, near: &Near, fitting: &Fitting, motions: &MotionTicks, end: &WayEnd) {
         self.by_pose.clear();
         self.by_pose.resize(near.count(), [NEVER; HEADINGS]);
         self.open.clear();
@@ -197,7 +197,7 @@ impl PoseTimes {
     }
 
     /// Collects the poses at the end of the path.
-    fn begin_at_ends(&mut self, near: &Near, motions: &Motions, end: &WayEnd) {
+    fn begin_at_ends(&mut self, near: &Near, motions: &MotionTicks, end: &WayEnd) {
         self.ends.clear();
         for number in near.around(end.at) {
             self.ends.extend((0..HEADINGS).filter_map(|heading| {
@@ -209,7 +209,7 @@ impl PoseTimes {
     }
 
     /// Reaches the headings from which the robot turns to those settled one turn before.
-    fn turn_to(&mut self, now: u16, (near, fitting): (&Near, &Fitting), motions: &Motions) {
+    fn turn_to(&mut self, now: u16, (near, fitting): (&Near, &Fitting), motions: &MotionTicks) {
         for index in self.all.before(now, motions.turn) {
             let Pose { place, heading, .. } = self.all.get(index);
             let Some(number) = near.number(place) else { continue };
@@ -365,7 +365,7 @@ impl Buckets {
 
 /// Durations of motions, in ticks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motions {
+pub(super) struct MotionTicks {
     /// Turn to the next heading.
     turn: u16,
     can_reverse: bool,
@@ -373,7 +373,7 @@ pub(super) struct Motions {
     back: [u16; KINDS],
 }
 
-impl Motions {
+impl MotionTicks {
     /// Durations for a robot, in ticks of `tick_s`.
     pub(super) fn new(limits: &Limits, can_reverse: bool, tick_s: f64) -> Self {
         let Limits { v_max_mps, v_min_mps, omega_max_radps, .. } = *limits;

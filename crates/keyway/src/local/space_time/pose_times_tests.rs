@@ -25,7 +25,7 @@ fn everywhere() -> (Near, Point) {
 fn relaxed(
     near: &Near,
     fitting: &Fitting,
-    motions: &Motions,
+    motions: &MotionTicks,
     end: &WayEnd,
 ) -> Vec<[u16; HEADINGS]> {
     let is_free = |number: usize, heading: usize| fitting.free(number) >> heading & 1 == 1;
@@ -94,7 +94,7 @@ fn times_are_those_of_the_relaxation_of_all_motions() {
         let mut limits = Robot::jackal().limits;
         limits.v_min_mps = [0.0, -0.1, -0.5, -2.0][round / 4 % 4];
         limits.omega_max_radps = [0.05, 0.4, 1.5, 6.0][round / 2 % 4];
-        let motions = Motions::new(&limits, limits.v_min_mps < 0.0, 0.1 / limits.v_max_mps);
+        let motions = MotionTicks::new(&limits, limits.v_min_mps < 0.0, 0.1 / limits.v_max_mps);
         let facing = match round % 3 {
             0 => Facing::Any,
             1 => Facing::At(1.0),

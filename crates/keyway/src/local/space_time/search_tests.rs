@@ -116,7 +116,7 @@ proptest! {
             path: &path,
             goal_heading_rad: None,
             remaining_m: path.length_m(),
-            smoothed: None,
+            jerk_limited: None,
         };
         let mut around = Around::default();
         let beyond_m = planner.look(&mut around, &scene, 0.0);

@@ -83,7 +83,7 @@ impl<'a> Drive<'a> {
             path,
             goal_heading_rad: None,
             remaining_m: pose.point().distance(end).max(0.01),
-            smoothed: None,
+            jerk_limited: None,
         })
     }
 
@@ -261,7 +261,7 @@ fn the_same_scene_gives_the_same_command_with_a_warm_scratch_and_allocates_nothi
         path: &drive.path,
         goal_heading_rad: None,
         remaining_m: 3.0,
-        smoothed: None,
+        jerk_limited: None,
     };
     let (planner, memory, scratch) = (&drive.planner, &mut drive.memory, &mut drive.scratch);
     let _ = planner.decide(&scene, memory, scratch);
@@ -426,7 +426,7 @@ proptest! {
         let start = Pose::new(2.0, 2.0, heading);
         prop_assume!(
             robot.footprint.is_free(start, &world)
-                && robot.footprint.distance_m(start, &world.clearance(), 1.0) > robot.safety_margin_m()
+                && robot.footprint.distance_m(start, &world.clearance(), 1.0) > robot.safety_margin_or_default_m()
         );
         let mut drive = Drive::new(&robot, &world, start, &[[2.0, 2.0], [end.0, end.1]]);
         for _ in 0..60 {

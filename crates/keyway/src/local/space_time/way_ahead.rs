@@ -82,7 +82,7 @@ mod tests {
             path: &path,
             goal_heading_rad: None,
             remaining_m: 18.0,
-            smoothed: None,
+            jerk_limited: None,
         };
         let mut route = Vec::new();
         let beyond_m = collect(&mut route, &scene, 3.0, 4.0);

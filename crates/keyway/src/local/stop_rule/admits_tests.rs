@@ -51,7 +51,7 @@ proptest! {
             prop_assume!(pose.y > 1.5);
         }
         let (seen, velocity) = (SeenCells::ANYWHERE, Velocity::new(v, omega));
-        let around = Surroundings { obstacles: &field, seen, movers: &[], delay_s: 0.0, pose, velocity, smoothed: None };
+        let around = Surroundings { obstacles: &field, seen, movers: &[], delay_s: 0.0, pose, velocity, jerk_limited: None };
         let begins_m = room_m(&robot, &around, pose);
         prop_assume!(begins_m > 1e-4);
         let asked = Velocity::new((v + faster).max(0.0), omega + turns);

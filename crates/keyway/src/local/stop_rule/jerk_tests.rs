@@ -26,8 +26,8 @@ impl Averaged {
     fn among<'a>(&'a self, ground: &'a Ground) -> Surroundings<'a> {
         let &Self { ref robot, ref window, pose, velocity } = self;
         let reference = window.reference_pose(pose, velocity, robot.cycle_s);
-        let smoothed = Some(Smoothed { window, pose, velocity });
-        Surroundings { smoothed, ..ground.around(reference, window.reference(), &[]) }
+        let jerk_limited = Some(JerkLimited { window, pose, velocity });
+        Surroundings { jerk_limited, ..ground.around(reference, window.reference(), &[]) }
     }
 
     /// Drives for a cycle in which the reference moves towards a command; returns the poses on

@@ -3,7 +3,7 @@
 use super::start::{Body, Covered, ROUNDING_M, Start, Touched};
 use super::{Refusal, StopRule, StopRuleConfig, Surroundings};
 use crate::geometry::{Disc, Point, Pose, Velocity, wrap_angle};
-use crate::local::Smoothed;
+use crate::local::JerkLimited;
 use crate::local::rear::{Seen, SeenAhead};
 use crate::map::{self, Cell, Core, DistanceField, NearBoxes, Placement, Turned, on_grid};
 use crate::robot::Robot;
@@ -89,7 +89,7 @@ impl Reach {
     /// Bounds of all manoeuvres whose velocities lie between the present and the requested one.
     fn new(robot: &Robot, core: &Core<'_>, around: &Surroundings<'_>, asked: Velocity) -> Self {
         let (limits, cycle_s) = (&robot.limits, robot.cycle_s);
-        let from = around.smoothed.map_or(around.velocity, |robot| robot.fastest());
+        let from = around.jerk_limited.map_or(around.velocity, |robot| robot.fastest());
         let v = from.v.abs().max(asked.v.abs());
         let omega = from.omega.abs().max(asked.omega.abs());
         let stop_s = (v / limits.deceleration_mps2).max(omega / limits.angular_deceleration_radps2);
@@ -99,7 +99,7 @@ impl Reach {
         let duration_s = 2.0 * cycle_s + stop_s;
         // With averaging, a robot moves no farther than the reference, and what is still
         // averaged; one that deviates from its commands first brakes to them.
-        let (more_s, later_s) = around.smoothed.map_or((0.0, 0.0), |_| {
+        let (more_s, later_s) = around.jerk_limited.map_or((0.0, 0.0), |_| {
             let smoothed_s = 2.0 * robot.smoothing_lag_s() + cycle_s;
             (smoothed_s + full_s, smoothed_s + duration_s)
         });
@@ -159,7 +159,7 @@ impl<'a> Manoeuvres<'a> {
     /// Checks that a manoeuvre that begins with a cycle towards `first` is admissible.
     pub(super) fn check(&mut self, first: Velocity) -> Result<(), Refusal> {
         let from = self.from(first);
-        let is_moved = self.around.smoothed.is_some_and(|robot| !robot.window.is_zero());
+        let is_moved = self.around.jerk_limited.is_some_and(|robot| !robot.window.is_zero());
         if from == Velocity::ZERO && first == Velocity::ZERO && !is_moved {
             return Ok(());
         }
@@ -169,7 +169,7 @@ impl<'a> Manoeuvres<'a> {
         // The rest of a motion that is reversed leads back, too, which is unavoidable.
         let leads = |sign: f64| {
             let is_there = |v: f64| v * sign > 0.0;
-            is_there(first.v) || self.around.smoothed.is_some_and(|robot| robot.leads(is_there))
+            is_there(first.v) || self.around.jerk_limited.is_some_and(|robot| robot.leads(is_there))
         };
         let behind = self.behind.filter(|_| leads(-1.0));
         let ahead = self.ahead.filter(|_| leads(1.0));
@@ -183,7 +183,7 @@ impl<'a> Manoeuvres<'a> {
             let braked = || limits.reached(last, limits.braked(last, cycle_s), cycle_s);
             (last != Velocity::ZERO).then(braked)
         });
-        match self.around.smoothed {
+        match self.around.jerk_limited {
             None => self.follow(from, braking, (ahead, behind)),
             Some(it) => self.follow(from, it.velocities(from, braking, robot), (ahead, behind)),
         }
@@ -257,8 +257,8 @@ impl<'a> Manoeuvres<'a> {
     fn from(&self, first: Velocity) -> Velocity {
         let (_, now) = self.around.robot();
         let Velocity { v, omega, .. } = now;
-        let is_still = |it: Smoothed<'_>| it.window.is_still(self.robot);
-        let is_standing = self.robot.stands(now) && self.around.smoothed.is_none_or(is_still);
+        let is_still = |it: JerkLimited<'_>| it.window.is_still(self.robot);
+        let is_standing = self.robot.stands(now) && self.around.jerk_limited.is_none_or(is_still);
         let unless_noise =
             |now: f64, asked: f64| if is_standing && asked == 0.0 { 0.0 } else { now };
         Velocity::new(unless_noise(v, first.v), unless_noise(omega, first.omega))

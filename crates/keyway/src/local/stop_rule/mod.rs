@@ -40,7 +40,7 @@
 //! which the moving obstacles were observed. The motion until then was decided earlier, as the
 //! beginning of the manoeuvre of an earlier command.
 //!
-//! For a robot with jerk limits ([`Surroundings::smoothed`]), a command is a velocity of its
+//! For a robot with jerk limits ([`Surroundings::jerk_limited`]), a command is a velocity of its
 //! reference, and braking is that of the reference; the manoeuvre is that of the robot itself. In
 //! every cycle the robot gets the mean of the last velocities of the reference
 //! ([`CommandWindow`](crate::robot::CommandWindow)), including those of earlier cycles, until
@@ -150,7 +150,7 @@ mod tests;
 mod touching_tests;
 
 use super::rear::{Front, Rear};
-use super::{Scene, Scratch, Smoothed};
+use super::{JerkLimited, Scene, Scratch};
 use crate::ConfigError;
 use crate::geometry::{Pose, Velocity};
 #[cfg(doc)]
@@ -177,12 +177,12 @@ pub struct StopRuleConfig {
 
 impl StopRuleConfig {
     /// Defaults for a robot: half of the margin that its local planner keeps from obstacles
-    /// ([`Robot::safety_margin_m`]), so that the gate does not change commands that such a
+    /// ([`Robot::safety_margin_or_default_m`]), so that the gate does not change commands that such a
     /// planner finds admissible. Moving obstacles are people: they walk at up to 1.5 m/s, and may
     /// turn around at once.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
-            margin_m: 0.5 * robot.safety_margin_m(),
+            margin_m: 0.5 * robot.safety_margin_or_default_m(),
             movers: MoverBounds { speed_mps: 1.5, acceleration_mps2: None },
         }
     }
@@ -216,21 +216,21 @@ pub struct Surroundings<'a> {
     /// Its velocity then.
     pub velocity: Velocity,
     /// The robot itself, if its commands are averaged.
-    pub smoothed: Option<Smoothed<'a>>,
+    pub jerk_limited: Option<JerkLimited<'a>>,
 }
 
 impl<'a> Surroundings<'a> {
     /// The stationary obstacles, as a local planner sees them. Observed space is not checked, and
     /// nothing moves.
     pub const fn standing(scene: &Scene<'a>) -> Self {
-        let Scene { obstacles, pose, velocity, smoothed, .. } = *scene;
+        let Scene { obstacles, pose, velocity, jerk_limited, .. } = *scene;
         let (seen, movers, delay_s) = (SeenCells::ANYWHERE, &[], 0.0);
-        Self { obstacles, seen, movers, delay_s, pose, velocity, smoothed }
+        Self { obstacles, seen, movers, delay_s, pose, velocity, jerk_limited }
     }
 
     /// Pose and velocity of the robot itself.
     fn robot(&self) -> (Pose, Velocity) {
-        self.smoothed.map_or((self.pose, self.velocity), |robot| (robot.pose, robot.velocity))
+        self.jerk_limited.map_or((self.pose, self.velocity), |robot| (robot.pose, robot.velocity))
     }
 
     fn is_finite(&self) -> bool {
@@ -367,7 +367,7 @@ impl RefusalCounts {
 ///     let pose = Pose::new(x, 1.5, 0.0);
 ///     let around = Surroundings {
 ///         obstacles: &obstacles, seen: SeenCells::ANYWHERE, movers: &[], delay_s: 0.0, pose, velocity,
-///         smoothed: None,
+///         jerk_limited: None,
 ///     };
 ///     rule.gate(&around, velocity, &mut scratch)
 /// };

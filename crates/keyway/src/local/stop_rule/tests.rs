@@ -49,7 +49,7 @@ impl Ground {
             delay_s: 0.0,
             pose,
             velocity,
-            smoothed: None,
+            jerk_limited: None,
         }
     }
 }

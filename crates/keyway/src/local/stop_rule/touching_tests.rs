@@ -92,7 +92,7 @@ impl AmongDiscs {
             delay_s: 0.0,
             pose,
             velocity,
-            smoothed: None,
+            jerk_limited: None,
         };
         gate(&rule(&self.robot), &around, command)
     }

@@ -17,7 +17,7 @@ impl Deciding<'_> {
         let window = self.world.motors.window().cloned();
         let robot_then = self.robot_then;
         let asked = Asked { pose, velocity, robot_then, window, memory: memory.clone() };
-        let scene = self.world.scene(self.task, (pose, velocity), asked.smoothed());
+        let scene = self.world.scene(self.task, (pose, velocity), asked.jerk_limited());
         let decision = self.local.decide(&scene, &mut memory, &mut self.record.scratch);
         (self.task.memory, self.record.asked) = (memory, Some(asked));
         self.record.evaluation = match &decision {

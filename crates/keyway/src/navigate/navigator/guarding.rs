@@ -102,8 +102,9 @@ impl Record {
         let movers = world.tracker.as_ref().map_or(&[][..], Tracker::possible_movers);
         let (obstacles, seen) = (&world.obstacles, world.seen_cells());
         let delay_s = world.motors.delay_s() + world.scan_age_s();
-        let smoothed = world.smoothed(robot_then);
-        let around = Surroundings { obstacles, seen, movers, delay_s, pose, velocity, smoothed };
+        let jerk_limited = world.jerk_limited(robot_then);
+        let around =
+            Surroundings { obstacles, seen, movers, delay_s, pose, velocity, jerk_limited };
         let gated = rule.gate(&around, asked, &mut self.scratch);
         let keeps_standing = gated.changed() && moment.stands() && robot.stands(gated.command);
         self.guard.note(gated.why, keeps_standing, elapsed_s);
@@ -122,7 +123,7 @@ pub(super) fn beside_movers(world: &World, moment: &Moment<'_>, command: Velocit
     let &Moment { robot, pose, velocity, .. } = moment;
     let Robot { limits, cycle_s, .. } = robot;
     let horizon_s = 2.0 * cycle_s + limits.stop_s();
-    let looks_m = [horizon_s, robot.safety_margin_m()];
+    let looks_m = [horizon_s, robot.safety_margin_or_default_m()];
     let rule = MoverRule::new(robot, &world.movers_then, (pose, velocity), looks_m);
     if rule.refuses(command) { limits.braked(velocity, *cycle_s) } else { command }
 }
@@ -161,7 +162,8 @@ fn comes_too_near(
     if points.is_empty() || command == Velocity::ZERO {
         return false;
     }
-    let (margin_m, cycle_s) = (robot.safety_margin_m().max(BESIDE_MOVERS_M), robot.cycle_s);
+    let (margin_m, cycle_s) =
+        (robot.safety_margin_or_default_m().max(BESIDE_MOVERS_M), robot.cycle_s);
     let (core, radius_m) = robot.footprint.core();
     let reach_m = robot.footprint.circumscribed_radius_m() + margin_m;
     let comes_near = |at: Pose, after_s: f64| {

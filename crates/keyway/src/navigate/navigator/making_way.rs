@@ -69,7 +69,8 @@ impl Deciding<'_> {
             Party { centre: other.centre, narrow_m: other.radius_m, wide_m: other.radius_m };
         let known = Clearance::new(self.world.known.frame(), self.world.known.occupied());
         let seen = self.world.obstacles.clearance();
-        let apart_m = 2.0 * self.robot.safety_margin_m() + 2.0 * known.frame().resolution_m();
+        let apart_m =
+            2.0 * self.robot.safety_margin_or_default_m() + 2.0 * known.frame().resolution_m();
         Encounter { known, seen, robot, other, apart_m }
     }
 

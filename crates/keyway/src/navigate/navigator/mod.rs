@@ -23,7 +23,7 @@ use super::time::Time;
 use super::world::{Told, World};
 use super::{Blocked, FittedStack, NavigateError, RecoveryCounts, Step};
 use crate::geometry::{Pose, Shift, Velocity};
-use crate::local::{DriveMemory, Evaluation, Scratch, Smoothed};
+use crate::local::{DriveMemory, Evaluation, JerkLimited, Scratch};
 use crate::map::OccupancyGrid;
 use crate::robot::{CommandWindow, Robot};
 use crate::sense::Observation;
@@ -101,9 +101,9 @@ struct Asked {
 }
 
 impl Asked {
-    fn smoothed(&self) -> Option<Smoothed<'_>> {
+    fn jerk_limited(&self) -> Option<JerkLimited<'_>> {
         let (window, (pose, velocity)) = (self.window.as_ref()?, self.robot_then);
-        Some(Smoothed { window, pose, velocity })
+        Some(JerkLimited { window, pose, velocity })
     }
 }
 

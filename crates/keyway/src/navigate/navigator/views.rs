@@ -108,7 +108,7 @@ impl Navigator {
             return Explanation::default();
         };
         // None of the inputs has changed since the decision.
-        let scene = self.world.scene(task, (asked.pose, asked.velocity), asked.smoothed());
+        let scene = self.world.scene(task, (asked.pose, asked.velocity), asked.jerk_limited());
         let local = self.slow.as_ref().map_or(&self.parts.local, |slow| &slow.local);
         local.explain(&scene, &asked.memory)
     }

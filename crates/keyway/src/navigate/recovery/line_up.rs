@@ -107,7 +107,7 @@ impl TightPlace<'_> {
     }
 
     pub(super) fn has_room_to_turn(&self, pose: Pose) -> bool {
-        let turning_m = self.radius_m() + self.robot.safety_margin_m();
+        let turning_m = self.radius_m() + self.robot.safety_margin_or_default_m();
         self.obstacles.clearance().is_clear_point(pose.point(), turning_m)
     }
 

@@ -11,7 +11,7 @@ mod track;
 
 pub(super) use manoeuvre::TightPlace;
 pub(super) use motion::{Moment, Motion, MotionStep, MotionUnderWay, kept_room_m};
-pub(super) use track::Track;
+pub(super) use track::DrivenTrack;
 
 use crate::geometry::{Point, Pose, Shift, Velocity, wrap_angle};
 use crate::map::DistanceField;
@@ -95,14 +95,14 @@ impl Display for RecoveryKind {
 
 /// The kinds that have been tried since the last progress.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(super) struct RecoveryOrder {
+pub(super) struct RecoveryCursor {
     /// Number of kinds tried.
     pub(super) tried: usize,
     /// Remaining path length at the first of them \[m\].
     trouble_m: f64,
 }
 
-impl RecoveryOrder {
+impl RecoveryCursor {
     /// Decrease of the remaining length, from that at the first recovery, that counts as progress
     /// and restarts the order \[m\].
     const PROGRESS_M: f64 = 0.3;
@@ -288,8 +288,8 @@ mod tests {
     #[test]
     fn kinds_come_in_order_until_there_is_progress() {
         let order = [RecoveryKind::Replan, RecoveryKind::Wait];
-        let mut recovery = RecoveryOrder::default();
-        let next = |recovery: &mut RecoveryOrder| recovery.next(&order, 5.0).unwrap();
+        let mut recovery = RecoveryCursor::default();
+        let next = |recovery: &mut RecoveryCursor| recovery.next(&order, 5.0).unwrap();
         assert_eq!(next(&mut recovery), RecoveryKind::Replan);
         recovery.note_progress(4.9);
         assert_eq!(next(&mut recovery), RecoveryKind::Wait);

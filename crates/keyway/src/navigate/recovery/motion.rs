@@ -81,7 +81,7 @@ pub(in crate::navigate) fn kept_room_m(
     pose: Pose,
     obstacles: &DistanceField,
 ) -> f64 {
-    let (margin_m, clearance) = (robot.safety_margin_m(), obstacles.clearance());
+    let (margin_m, clearance) = (robot.safety_margin_or_default_m(), obstacles.clearance());
     let to_border_m = robot.footprint.to_border_m(pose, &clearance);
     let room_m = robot.footprint.distance_m(pose, &clearance, 2.0 * margin_m).min(to_border_m);
     NEARLY * margin_m.min(0.5 * room_m.max(0.0))
@@ -183,7 +183,8 @@ fn is_wide(
 ) -> bool {
     /// Extra clearance of a drive, which drifts sideways if it is slightly misaligned.
     const BESIDE_DRIVES_M: f64 = 0.05;
-    let (limits, footprint, margin_m) = (&robot.limits, &robot.footprint, robot.safety_margin_m());
+    let (limits, footprint, margin_m) =
+        (&robot.limits, &robot.footprint, robot.safety_margin_or_default_m());
     let stops_within = |most: f64, brakes: f64| {
         let fast = share * most;
         fast * robot.cycle_s + fast * fast / (2.0 * brakes)
@@ -314,7 +315,7 @@ mod tests {
     fn turns_are_as_fast_as_there_is_room() {
         let obstacles = walls(&["........", "........", "........", "########"]);
         let (robot, turn) = (Robot::jackal(), Motion::Turn(3.0));
-        let (footprint, margin_m) = (&robot.footprint, robot.safety_margin_m());
+        let (footprint, margin_m) = (&robot.footprint, robot.safety_margin_or_default_m());
         let share =
             |beside_m: f64| share(&robot, Pose::new(4.0, 1.0 + beside_m, 0.0), turn, &obstacles);
         let (inner_m, outer_m) =
@@ -333,7 +334,7 @@ mod tests {
     fn drives_are_as_fast_as_there_is_room() {
         let obstacles = walls(&["........", "........", "........", "########"]);
         let robot = Robot::jackal();
-        let room_m = robot.safety_margin_m() + 0.05;
+        let room_m = robot.safety_margin_or_default_m() + 0.05;
         let beside_m = 1.0 + robot.footprint.inscribed_radius_m() + room_m;
         let along = |y| share(&robot, Pose::new(2.0, y, 0.0), Motion::Drive(1.0), &obstacles);
         assert_eq!([1e-3, -1e-3].map(|more_m| along(beside_m + more_m)), [1.0, SPEED_SHARE]);

@@ -6,12 +6,12 @@ use std::collections::VecDeque;
 
 /// The last positions on the robot's track, newest last.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(in crate::navigate) struct Track {
+pub(in crate::navigate) struct DrivenTrack {
     places: VecDeque<Point>,
     spacing_m: f64,
 }
 
-impl Track {
+impl DrivenTrack {
     /// Maximum number of positions.
     const MOST: usize = 64;
 
@@ -59,15 +59,15 @@ mod tests {
 
     #[test]
     fn the_track_leads_back_the_way_it_came() {
-        let mut track = Track::new(0.125);
+        let mut track = DrivenTrack::new(0.125);
         for i in 0..=640 {
             track.note(Point::new(f64::from(i) / 64.0, 0.0));
         }
         let here = Point::new(10.0, 0.0);
         let back: Vec<f64> = track.back(here, 0.4).map(|place| place.x).collect();
         assert_eq!(back, [9.625, 9.75, 9.875, 10.0]);
-        assert_eq!(track.back(here, 1e9).count(), Track::MOST);
-        assert_eq!(Track::new(0.125).back(here, 1.0).count(), 0);
+        assert_eq!(track.back(here, 1e9).count(), DrivenTrack::MOST);
+        assert_eq!(DrivenTrack::new(0.125).back(here, 1.0).count(), 0);
         let info = allocation_counter::measure(|| track.note(Point::new(20.0, 0.0)));
         assert_eq!(info.count_total, 0);
     }

@@ -10,7 +10,7 @@ use super::doubts::{Doubt, Doubts};
 use super::masks::Masks;
 use super::motors::Motors;
 use super::poses::Poses;
-use super::recovery::Track;
+use super::recovery::DrivenTrack;
 use super::route::Router;
 use super::time::Time;
 use super::walked_ground::WalkedGround;
@@ -45,7 +45,7 @@ pub(super) struct World {
     pub(super) tracker: Option<Tracker>,
     pub(super) walked: WalkedGround,
     /// Recent positions of the robot.
-    pub(super) track: Track,
+    pub(super) track: DrivenTrack,
     pub(super) motors: Motors,
     /// Moving obstacles, predicted to the time at which the next command takes effect.
     pub(super) movers_then: Vec<Mover>,
@@ -114,7 +114,7 @@ impl World {
             seen: stack.build_seen_ground(frame, robot),
             tracker: tracker.clone(),
             walked: WalkedGround::default(),
-            track: Track::new(frame.resolution_m()),
+            track: DrivenTrack::new(frame.resolution_m()),
             motors: Motors::new(robot),
             movers_then: Vec::new(),
             surfaces_then: Vec::new(),

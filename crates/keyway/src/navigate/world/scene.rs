@@ -3,7 +3,7 @@
 use super::World;
 use crate::geometry::{Pose, Velocity};
 use crate::guide::Guidance;
-use crate::local::{Scene, Smoothed};
+use crate::local::{JerkLimited, Scene};
 use crate::navigate::task::Task;
 
 impl World {
@@ -12,7 +12,7 @@ impl World {
         &'a self,
         task: &'a Task,
         (pose, velocity): (Pose, Velocity),
-        smoothed: Option<Smoothed<'a>>,
+        jerk_limited: Option<JerkLimited<'a>>,
     ) -> Scene<'a> {
         let (obstacles, sensed, movers) =
             (&self.obstacles, self.sensed.sensed(), &self.movers_then[..]);
@@ -33,17 +33,17 @@ impl World {
             path,
             goal_heading_rad,
             remaining_m,
-            smoothed,
+            jerk_limited,
         }
     }
 
     /// State of the robot itself when its next command takes effect, if its commands are
     /// averaged.
-    pub(in crate::navigate) fn smoothed(
+    pub(in crate::navigate) fn jerk_limited(
         &self,
         robot_then: (Pose, Velocity),
-    ) -> Option<Smoothed<'_>> {
+    ) -> Option<JerkLimited<'_>> {
         let (window, (pose, velocity)) = (self.motors.window()?, robot_then);
-        Some(Smoothed { window, pose, velocity })
+        Some(JerkLimited { window, pose, velocity })
     }
 }

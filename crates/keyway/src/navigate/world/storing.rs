@@ -6,7 +6,7 @@ use crate::navigate::doubts::Doubts;
 use crate::navigate::masks::Masks;
 use crate::navigate::motors::StoredMotors;
 use crate::navigate::poses::Poses;
-use crate::navigate::recovery::Track;
+use crate::navigate::recovery::DrivenTrack;
 use crate::navigate::time::Time;
 use crate::navigate::walked_ground::WalkedGround;
 use crate::navigate::{Blocked, FittedStack, NavigateError, RestoreError};
@@ -27,7 +27,7 @@ pub(in crate::navigate) struct StoredWorld {
     seen: Option<SeenStored>,
     tracker: Option<Tracker>,
     walked: WalkedGround,
-    track: Track,
+    track: DrivenTrack,
     motors: StoredMotors,
     edits: Vec<Edit>,
     poses: Poses,

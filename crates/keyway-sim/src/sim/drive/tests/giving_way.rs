@@ -1,12 +1,12 @@
 //! Runs among obstacles that give way.
 
 use super::*;
-use crate::sim::{KeyFrame, KeyFrames, Motion, MoverWay, MovingObstacle, WayPoints};
+use crate::sim::{KeyFrame, KeyFrames, MoverWay, MovingObstacle, ObstacleMotion, WayPoints};
 
 /// An obstacle that moves to and fro between two positions at 1 m/s.
 fn between(from: Point, to: Point) -> MovingObstacle {
     let course = WayPoints::to_and_fro(vec![from, to], 1.0).unwrap();
-    MovingObstacle::new(0.25, Motion::GivesWay(course)).unwrap()
+    MovingObstacle::new(0.25, ObstacleMotion::GivesWay(course)).unwrap()
 }
 
 /// Runs a robot among moving obstacles with one commanded velocity.
@@ -96,7 +96,7 @@ fn what_a_robot_meets_is_where_the_obstacle_was() {
                 assert_eq!(frame.t_s, sample.t_s);
             }
             let frames = KeyFrames::new(way.key_frames.clone()).unwrap();
-            driven.push(MovingObstacle::new(0.25, Motion::KeyFrames(frames)).unwrap());
+            driven.push(MovingObstacle::new(0.25, ObstacleMotion::KeyFrames(frames)).unwrap());
         }
         let again = among(driven, Pose::new(-1.0, 0.0, 0.0), command, 15.0);
         assert_eq!(Run { movers: vec![], ..run }, again);

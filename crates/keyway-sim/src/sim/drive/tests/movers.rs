@@ -1,7 +1,7 @@
 //! Runs among moving obstacles.
 
 use super::*;
-use crate::sim::{KeyFrame, KeyFrames, Motion, MovingObstacle, Spline, WayPoints};
+use crate::sim::{KeyFrame, KeyFrames, MovingObstacle, ObstacleMotion, Spline, WayPoints};
 use keyway::robot::Footprint;
 
 const STAY: Velocity = Velocity::ZERO;
@@ -72,7 +72,7 @@ fn corners_within_a_cycle_count() {
     for (nearest_m, touches) in [(0.44, false), (0.42, true)] {
         let frame = |t_s, x| KeyFrame { t_s, position: Point::new(x, 0.0) };
         let frames = KeyFrames::new(vec![frame(0.2, 3.0), frame(0.5, nearest_m), frame(0.8, 3.0)]);
-        let mover = MovingObstacle::new(0.25, Motion::KeyFrames(frames.unwrap())).unwrap();
+        let mover = MovingObstacle::new(0.25, ObstacleMotion::KeyFrames(frames.unwrap())).unwrap();
         let run = drive(&open(vec![mover]), &brisk(1.0), FAR, &limit(2.0), STAY);
         if touches {
             let (t_s, _, with, _) = contact(&run);
@@ -100,7 +100,7 @@ fn the_first_of_several_contacts_counts() {
 #[test]
 fn clearances_from_what_stands_and_what_moves_are_apart() {
     let ends = vec![Point::new(-3.0, 2.0), Point::new(3.0, 2.0)];
-    let patrol = Motion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
+    let patrol = ObstacleMotion::WayPoints(WayPoints::around(ends, 1.0).unwrap());
     let patrol = MovingObstacle::new(0.25, patrol).unwrap();
     let run = drive(
         &world(&[(0.0, -1.0, 0.5)]).with_movers(vec![patrol]),
@@ -156,7 +156,8 @@ fn the_speed_at_a_contact_is_said() {
     // there.
     let frames = [[1.0, 4.0, 0.0], [1.4, -4.0, 0.0]].map(KeyFrame::from).to_vec();
     let darts =
-        MovingObstacle::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap();
+        MovingObstacle::new(0.25, ObstacleMotion::Spline(Spline::new(frames, 3.0).unwrap()))
+            .unwrap();
     let (speed, t_s) = speed_mps(&open(vec![darts]));
     let u = (t_s - 1.0) / 0.4;
     let place_m = 4.0 - 4.0 * u - 12.0 * u * u + 8.0 * u * u * u;
@@ -173,7 +174,7 @@ fn the_speed_at_a_contact_is_said() {
 /// An obstacle at (x, 0) for a second, then aside; after 3 s it jumps back.
 fn jumping_to(x: f64) -> MovingObstacle {
     let frames = [[0.0, x, 0.0], [1.0, x, 0.0], [1.5, x, 5.0]].map(KeyFrame::from).to_vec();
-    MovingObstacle::new(0.25, Motion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap()
+    MovingObstacle::new(0.25, ObstacleMotion::Spline(Spline::new(frames, 3.0).unwrap())).unwrap()
 }
 
 #[test]
@@ -203,7 +204,7 @@ fn a_jump_at_every_time_of_a_cycle_is_met() {
     for lap in 0..40 {
         let duration_s = 2.0 + f64::from(lap) * 0.0125;
         let frames = [[0.0, 1.0, 0.0], [1.0, 1.0, 5.0]].map(KeyFrame::from).to_vec();
-        let motion = Motion::Spline(Spline::new(frames, duration_s).unwrap());
+        let motion = ObstacleMotion::Spline(Spline::new(frames, duration_s).unwrap());
         let world = open(vec![MovingObstacle::new(0.25, motion).unwrap()]);
         let run = drive(&world, &robot(), FAR, &limit(10.0), Velocity::new(0.5, 0.0));
         assert!(matches!(run.outcome, Outcome::Collided { jumped_onto: true, .. }), "{duration_s}");

@@ -1,4 +1,4 @@
-use super::super::{Motion, MovingObstacle};
+use super::super::{MovingObstacle, ObstacleMotion};
 use super::*;
 use proptest::prelude::*;
 use serde_json::json;
@@ -30,7 +30,7 @@ fn equal_steps_on_a_line_are_uniform_between_the_first_and_the_last() {
 #[test]
 fn a_lap_ends_with_a_jump_at_its_instant() {
     // 0.3 is rounded, and so are its multiples.
-    let jumping = Motion::Spline(spline(&[[0.05, 1.0, 0.0], [0.2, 2.0, 0.0]], 0.3));
+    let jumping = ObstacleMotion::Spline(spline(&[[0.05, 1.0, 0.0], [0.2, 2.0, 0.0]], 0.3));
     let (first, last) = (Point::new(1.0, 0.0), Point::new(2.0, 0.0));
     assert_eq!([-1.0, 0.0, 0.05].map(|t_s| jumping.position(t_s)), [first; 3]);
     assert_eq!([0.2, 0.25].map(|t_s| jumping.position(t_s)), [last; 2]);
@@ -60,7 +60,7 @@ fn a_lap_ends_with_a_jump_at_its_instant() {
 fn a_closed_course_goes_on_without_a_jump() {
     let square =
         [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 1.0, 1.0], [3.0, 0.0, 1.0], [4.0, 0.0, 0.0]];
-    let around = Motion::Spline(spline(&square, 4.0));
+    let around = ObstacleMotion::Spline(spline(&square, 4.0));
     assert_eq!((around.next_jump_s(3.5), around.last_jump_s(9.0)), (None, None));
     // Along the diagonal at the first corner, as at all others.
     let step = (around.position(4.0 + 1e-6) - around.position(4.0 - 1e-6)) * 5e5;
@@ -165,7 +165,7 @@ fn numbers_beyond_measure_are_refused() {
     let still = &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
     assert_eq!(path(still, f64::INFINITY), "duration_s");
     assert_eq!(path(still, f64::NAN), "duration_s");
-    assert!(MovingObstacle::new(-1.0, Motion::Spline(spline(still, 1.0))).is_err());
+    assert!(MovingObstacle::new(-1.0, ObstacleMotion::Spline(spline(still, 1.0))).is_err());
 }
 
 #[test]

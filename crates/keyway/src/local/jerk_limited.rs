@@ -6,7 +6,7 @@ use crate::robot::{CommandWindow, Robot};
 /// State of a robot whose commands are averaged ([`CommandWindow`]). Planners decide for its
 /// reference; contact is checked for the robot itself.
 #[derive(Clone, Copy, Debug)]
-pub struct Smoothed<'a> {
+pub struct JerkLimited<'a> {
     /// Velocities that are still averaged.
     pub window: &'a CommandWindow,
     /// Pose of the robot itself when its next command acts.
@@ -15,7 +15,7 @@ pub struct Smoothed<'a> {
     pub velocity: Velocity,
 }
 
-impl Smoothed<'_> {
+impl JerkLimited<'_> {
     /// Velocities of the robot at the ends of the next cycles, until it is stationary, for those
     /// of its reference, which end at rest. The robot begins with `from`; there is at least one
     /// reference.
