@@ -2,7 +2,7 @@
 
 use super::robot_in_a_world::{RobotInAWorld, hall, wall_with_doors};
 use keyway::geometry::{Disc, Point, Pose, Velocity};
-use keyway::navigate::Doubt;
+use keyway::navigate::{Blocked, Doubt};
 use keyway::sense::{Observation, Scan, SensorScan};
 use keyway_sim::sim::World;
 
@@ -105,6 +105,93 @@ fn a_scan_that_is_given_again_is_noticed() {
     }
     life.drive_for(2.2);
     assert_eq!(life.navigator.doubts(), [], "it is over");
+}
+
+/// A sensor that hangs keeps the robot stationary once it is blind, however often its driver gives
+/// the same scan a new stamp. The first other scan lets it go on.
+#[test]
+fn a_sensor_that_hangs_keeps_the_robot_stationary() {
+    let mut life = driving();
+    life.drive_for(2.0);
+    let world = World::from_known(&life.truth, life.posts.clone()).unwrap();
+    let cast = |life: &RobotInAWorld| world.at(0.0).cast(life.pose, &life.robot.sensors[0]);
+    let hanging = cast(&life);
+    let cycle = |life: &mut RobotInAWorld, scan: &Scan| {
+        let (stamp_s, pose, velocity) = (life.stamp_s, life.pose, life.velocity);
+        let scans = [SensorScan::of(&life.robot, 0, stamp_s, scan)];
+        life.navigator.observe(&Observation::new(stamp_s, pose, velocity, &scans));
+        let step = life.navigator.step();
+        life.obey(step.command());
+        step
+    };
+    for _ in 0..20 {
+        cycle(&mut life, &hanging);
+    }
+    assert_eq!(life.velocity, Velocity::ZERO);
+    let stopped = life.pose;
+    for _ in 0..60 {
+        let step = cycle(&mut life, &hanging);
+        assert!(matches!(step.why(), Some(Blocked::SensorSilent { .. })), "{step:?}");
+        assert_eq!(life.navigator.doubts(), [Doubt::ScanRepeated { sensor: 0 }]);
+    }
+    assert_eq!(life.pose, stopped);
+    for _ in 0..30 {
+        let scan = cast(&life);
+        cycle(&mut life, &scan);
+    }
+    assert!(life.pose.x > stopped.x + 0.2, "{:?}", life.pose);
+    assert_eq!(life.navigator.doubts(), []);
+}
+
+/// Without noise, the scans of a robot that is stationary are the same. One wrong pose and velocity
+/// make no sensor hang.
+#[test]
+fn one_wrong_velocity_does_not_blind_a_robot_for_ever() {
+    let mut life = driving();
+    life.drive_for(2.0);
+    life.navigator.cancel();
+    life.drive_for(3.0);
+    let world = World::from_known(&life.truth, life.posts.clone()).unwrap();
+    let scan = world.at(0.0).cast(life.pose, &life.robot.sensors[0]);
+    life.navigator.set_goal(Point::new(10.0, 4.0)).unwrap();
+    let (true_pose, mut blind) = (life.pose, 0);
+    for cycle in 0..30 {
+        let is_wrong = cycle == 3;
+        let [off_rad, omega_radps] = if is_wrong { [0.05, 0.3] } else { [0.0, 0.0] };
+        let pose = Pose { theta: true_pose.theta + off_rad, ..true_pose };
+        let velocity = Velocity::new(0.0, omega_radps);
+        let scans = [SensorScan::of(&life.robot, 0, life.stamp_s, &scan)];
+        life.navigator.observe(&Observation::new(life.stamp_s, pose, velocity, &scans));
+        let step = life.navigator.step();
+        blind += u32::from(matches!(step.why(), Some(Blocked::SensorSilent { .. })));
+        life.obey(Velocity::ZERO);
+    }
+    assert_eq!(blind, 0);
+}
+
+/// Degrees, millimetres, and stamps of another clock.
+#[test]
+fn scans_that_cannot_be_used_are_named() {
+    let fault = |change: fn(&mut Scan, &mut f64)| {
+        let mut life = driving();
+        let world = World::from_known(&life.truth, life.posts.clone()).unwrap();
+        let mut scan = world.at(0.0).cast(life.pose, &life.robot.sensors[0]);
+        let mut stamp_s = life.stamp_s;
+        change(&mut scan, &mut stamp_s);
+        let scans = [SensorScan::of(&life.robot, 0, stamp_s, &scan)];
+        let observation = Observation::new(life.stamp_s, life.pose, life.velocity, &scans);
+        life.navigator.observe(&observation);
+        life.navigator.doubts().iter().map(Doubt::to_string).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(fault(|_, _| {}), "");
+    let degrees = fault(|scan, _| scan.angle_increment_rad = 1.0);
+    assert!(degrees.contains("sensor 0") && degrees.contains("in radians"), "{degrees}");
+    let millimetres = fault(|scan, _| scan.ranges_m.iter_mut().for_each(|m| *m *= 1000.0));
+    assert!(millimetres.contains("give metres"), "{millimetres}");
+    let ahead = fault(|_, stamp_s| *stamp_s += 5.0);
+    assert!(ahead.contains("stamped 5.0 s ahead of the pose"), "{ahead}");
+    let behind = fault(|_, stamp_s| *stamp_s -= 3.0);
+    assert!(behind.contains("stamped 3.0 s behind the pose"), "{behind}");
 }
 
 /// In the open, scans are all alike. Many lidars give 0 for beams that parts of the robot mask.

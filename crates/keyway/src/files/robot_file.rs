@@ -111,18 +111,30 @@ impl LimitsPart {
             v_min_mps: self.v_min_mps.unwrap_or(base.v_min_mps),
             omega_max_radps: self.omega_max_radps.unwrap_or(base.omega_max_radps),
             acceleration_mps2: self.acceleration_mps2.unwrap_or(base.acceleration_mps2),
-            deceleration_mps2: self.deceleration_mps2.unwrap_or(base.deceleration_mps2),
+            deceleration_mps2: braking(
+                self.deceleration_mps2,
+                self.acceleration_mps2,
+                base.deceleration_mps2,
+            ),
             angular_acceleration_radps2: self
                 .angular_acceleration_radps2
                 .unwrap_or(base.angular_acceleration_radps2),
-            angular_deceleration_radps2: self
-                .angular_deceleration_radps2
-                .unwrap_or(base.angular_deceleration_radps2),
+            angular_deceleration_radps2: braking(
+                self.angular_deceleration_radps2,
+                self.angular_acceleration_radps2,
+                base.angular_deceleration_radps2,
+            ),
             jerk_mps3: self.jerk_mps3.or(base.jerk_mps3),
             angular_jerk_radps3: self.angular_jerk_radps3.or(base.angular_jerk_radps3),
             ..base.clone()
         }
     }
+}
+
+/// The deceleration, or that of the base if it is missing, but then no more than a given
+/// acceleration: a robot that is weaker than its base does not brake as hard either.
+fn braking(deceleration: Option<f64>, acceleration: Option<f64>, of_base: f64) -> f64 {
+    deceleration.unwrap_or_else(|| acceleration.map_or(of_base, |given| given.min(of_base)))
 }
 
 /// A robot with some of its values changed, each by its path in a robot file, such as
@@ -186,6 +198,20 @@ mod tests {
     fn robot(text: &str) -> Result<Robot, String> {
         let file: RobotFile = from_toml(text).map_err(|error| error.to_string())?;
         file.robot().map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_weaker_robot_does_not_brake_harder_than_it_accelerates() {
+        let of = |text: &str| {
+            let limits = robot(&format!("like = \"small\"\n[limits]\n{text}")).unwrap().limits;
+            [limits.deceleration_mps2, limits.angular_deceleration_radps2]
+        };
+        let small = Robot::small().limits;
+        let [usual, angular] = [small.deceleration_mps2, small.angular_deceleration_radps2];
+        assert_eq!(of("acceleration_mps2 = 0.1"), [0.1, angular]);
+        assert_eq!(of("angular_acceleration_radps2 = 0.2"), [usual, 0.2]);
+        assert_eq!(of("acceleration_mps2 = 99"), [usual, angular]);
+        assert_eq!(of("acceleration_mps2 = 0.1\ndeceleration_mps2 = 2"), [2.0, angular]);
     }
 
     #[test]

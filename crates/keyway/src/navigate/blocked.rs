@@ -127,8 +127,8 @@ pub enum Blocked {
     /// The last observation is older than the one before and was discarded. The command is to
     /// stop.
     #[error(
-        "the observation of {} s is older than the last one, of {} s: give observations in the \
-         order of their stamps; after a change of the clock, call `restart_clock`",
+        "the observation of {} s is older than the last one, of {} s: one of the two stamps is \
+         wrong, or they come out of order; after a change of the clock, call `restart_clock`",
         Computed(*.stamp_s), Computed(*.last_s)
     )]
     TimeRunsBack {

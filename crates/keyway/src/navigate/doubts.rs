@@ -4,6 +4,7 @@ use super::motors::Motors;
 use super::time::Time;
 use crate::geometry::{Pose, Velocity, wrap_angle};
 use crate::robot::Robot;
+use crate::sense::SensorScan;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::fmt::{self, Display, Formatter};
@@ -50,10 +51,75 @@ pub enum Doubt {
     /// A scan within the last 2 s had bitwise the same ranges as the one before, while the robot
     /// drove or turned by more than 2 cm or 1 degree. It does not count as a new scan, unless
     /// nearly all of its hits are at obstacles that are already known or sensed.
+    /// Until another scan arrives, repetitions do not count either while the robot is stationary.
     ScanRepeated {
         /// Index of the sensor.
         sensor: usize,
     },
+    /// A scan within the last 2 s could not be used as it was given.
+    ScanUnusable {
+        /// Index of the sensor.
+        sensor: usize,
+        /// Reason.
+        why: ScanFault,
+    },
+}
+
+/// Reason why a scan cannot be used as it was given.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum ScanFault {
+    /// The bearings of the beams are implausible ([`Scan::check`](crate::sense::Scan::check)). The
+    /// scan was ignored.
+    Bearings,
+    /// All ranges are far beyond the largest range of the scan: they show no obstacle.
+    BeyondRange,
+    /// The stamp of the scan and that of the pose differ by more than 1 s.
+    Stamp {
+        /// Time by which the scan is ahead of the pose \[s\]; negative if it is behind.
+        ahead_s: f64,
+    },
+}
+
+impl ScanFault {
+    /// Difference of the stamps of a scan and of the pose that is a fault \[s\].
+    const STAMP_S: f64 = 1.0;
+    /// Factor by which ranges beyond the largest one are in another unit.
+    const TIMES: f64 = 5.0;
+
+    /// The fault of a scan that is this time ahead of the pose, if it has one.
+    pub(super) fn of(scan: &SensorScan<'_>, ahead_s: f64) -> Option<Self> {
+        let beams = &scan.scan;
+        if beams.check().is_err() {
+            return Some(Self::Bearings);
+        }
+        // A wall beyond the range is no fault; NaN, 0 and infinity say nothing about the unit.
+        let is_length = |range_m: &f64| range_m.is_finite() && *range_m > 0.0;
+        let nearest_m = beams.ranges_m.iter().filter(is_length).reduce(f64::min);
+        if nearest_m.is_some_and(|nearest_m| nearest_m > Self::TIMES * beams.range_max_m) {
+            return Some(Self::BeyondRange);
+        }
+        (ahead_s.abs() > Self::STAMP_S).then_some(Self::Stamp { ahead_s })
+    }
+}
+
+impl Display for ScanFault {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Bearings => f.write_str(
+                "have no beams, or bearings that cover more than a full turn: give angles in radians",
+            ),
+            Self::BeyondRange => {
+                f.write_str(
+                    "have only ranges far beyond their largest one: give metres, and infinity for no return",
+                )
+            }
+            Self::Stamp { ahead_s } => {
+                let side = if ahead_s > 0.0 { "ahead of" } else { "behind" };
+                write!(f, "are stamped {:.1} s {side} the pose: check the clocks", ahead_s.abs())
+            }
+        }
+    }
 }
 
 impl Display for Doubt {
@@ -87,6 +153,7 @@ impl Display for Doubt {
                 f,
                 "sensor {sensor} repeats the same scan although the robot moves: check its driver"
             ),
+            Self::ScanUnusable { sensor, why } => write!(f, "the scans of sensor {sensor} {why}"),
         }
     }
 }
@@ -102,6 +169,9 @@ pub(super) struct Doubts {
     jump: Option<(Time, [f64; 2])>,
     /// Time at which each sensor last repeated a scan.
     repeated: Vec<Option<Time>>,
+    /// Last fault of the scans of each sensor that has had one, and its time.
+    #[serde(default)]
+    faults: Vec<(usize, Time, ScanFault)>,
     found: Vec<Doubt>,
 }
 
@@ -134,7 +204,8 @@ impl Doubts {
             usual_rad: Self::AT_FIRST_RAD,
             jump: None,
             repeated: vec![None; sensors],
-            found: Vec::with_capacity(7 + sensors),
+            faults: Vec::with_capacity(sensors),
+            found: Vec::with_capacity(7 + 2 * sensors),
         }
     }
 
@@ -197,6 +268,12 @@ impl Doubts {
         self.repeated[sensor] = Some(time);
     }
 
+    /// Records that a scan of a sensor cannot be used as it was given.
+    pub(super) fn note_fault(&mut self, sensor: usize, now: Time, fault: ScanFault) {
+        self.faults.retain(|&(other, ..)| other != sensor);
+        self.faults.push((sensor, now, fault));
+    }
+
     /// Records the inputs of a cycle and the command in effect.
     pub(super) fn note(&mut self, time: Time, (pose, told): (Pose, Velocity), command: Velocity) {
         self.moments.push_back(Moment { time, pose, told, command });
@@ -246,6 +323,11 @@ impl Doubts {
         for (sensor, time) in self.repeated.iter().enumerate() {
             if time.is_some_and(|time| is_recent(&time)) {
                 self.found.push(Doubt::ScanRepeated { sensor });
+            }
+        }
+        for &(sensor, time, why) in &self.faults {
+            if is_recent(&time) {
+                self.found.push(Doubt::ScanUnusable { sensor, why });
             }
         }
         let (Some(first), Some(last)) = (self.moments.front(), self.moments.back()) else { return };

@@ -73,7 +73,7 @@ mod watch;
 mod world;
 
 pub use blocked::{Blocked, Step};
-pub use doubts::Doubt;
+pub use doubts::{Doubt, ScanFault};
 pub use error::NavigateError;
 pub use fitted::FittedStack;
 pub use goal::Goal;

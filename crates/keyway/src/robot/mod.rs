@@ -214,7 +214,7 @@ mod tests {
             (
                 |r, x| r.sensors[0].range_m = x,
                 1e300,
-                "sensors[0].range_m must be a length from 0.001 to 10000 m, got 1e300",
+                "sensors[0].range_m must be a length in metres, from 0.001 to 1000, got 1e300",
             ),
         ];
         for (set, value, expected) in cases {

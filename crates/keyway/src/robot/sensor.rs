@@ -15,9 +15,10 @@ pub struct RangeSensor {
     pub mount: Mount,
     /// Number of beams, spread evenly over the field of view.
     pub beams: u32,
-    /// Field of view, centred on `mount.yaw_deg` \[deg\]; 360 is all around.
+    /// Field of view, centred on `mount.yaw_deg` \[deg\]; 360 is all around. For more than 8 beams,
+    /// it is at least 7.
     pub field_of_view_deg: f64,
-    /// Range \[m\], from 0.001 to 10000.
+    /// Range \[m\], from 0.001 to 1000.
     pub range_m: f64,
     /// Smallest valid range \[m\]: a shorter reading carries no information. From 0, the default,
     /// to below `range_m`.
@@ -65,13 +66,20 @@ impl RangeSensor {
                 f64::MIN_POSITIVE..=360.0,
                 "an angle above 0 and up to 360",
             ),
-            ("range_m", range_m, 1e-3..=1e4, "a length from 0.001 to 10000 m"),
+            ("range_m", range_m, 1e-3..=1e3, "a length in metres, from 0.001 to 1000"),
             ("period_s", period_s.unwrap_or(1.0), 1e-3..=60.0, "a time from 0.001 to 60 s"),
             ("timeout_s", timeout_s.unwrap_or(1.0), 1e-3..=3600.0, "a time from 0.001 to 3600 s"),
         ];
         let unusable = checks.into_iter().find(|(_, value, usable, _)| !usable.contains(value));
         if let Some((field, value, _, expected)) = unusable {
             return Err(ConfigError::must_be(field, expected, value));
+        }
+        if beams > Self::FEW_BEAMS && field_of_view_deg < Self::NARROWEST_FIELD_DEG {
+            let reason = format!(
+                "is {field_of_view_deg} degrees for {beams} beams; is it in radians? {} beams or fewer may be as narrow",
+                Self::FEW_BEAMS
+            );
+            return Err(ConfigError::new("field_of_view_deg", reason));
         }
         if (0.0..range_m).contains(&range_min_m) {
             return Ok(());
@@ -82,6 +90,11 @@ impl RangeSensor {
 }
 
 impl RangeSensor {
+    /// Number of beams of sensors that may have any field of view, such as sonars.
+    const FEW_BEAMS: u32 = 8;
+    /// Smallest field of view of other sensors \[deg\]: a full turn is 6.3 rad.
+    const NARROWEST_FIELD_DEG: f64 = 7.0;
+
     /// Width of an object that must not be missed between two beams \[m\].
     pub const NARROWEST_M: f64 = 0.06;
 
@@ -125,8 +138,19 @@ impl Robot {
             let reason = format!("must be one to eight sensors, got {}", self.sensors.len());
             return Err(ConfigError::new("sensors", reason));
         }
+        // Far beyond any mast or boom: most likely not in metres.
+        let farthest_m = 3.0 * self.footprint.circumscribed_radius_m() + 0.5;
         self.sensors.iter().enumerate().try_for_each(|(i, sensor)| {
-            sensor.validate().map_err(|error| error.within(&format!("sensors[{i}]")))
+            let name = format!("sensors[{i}]");
+            sensor.validate().map_err(|error| error.within(&name))?;
+            let away_m = sensor.mount.pose().point().distance(Point::default());
+            if away_m <= farthest_m {
+                return Ok(());
+            }
+            let reason = format!(
+                "is {away_m} m away from the robot's centre of rotation, far outside its footprint; is it in metres?"
+            );
+            Err(ConfigError::new("mount", reason).within(&name))
         })
     }
 
@@ -210,6 +234,34 @@ mod tests {
         assert_eq!((robot.scan_period_s(), timeout_s(&robot)), (1.0, 3.0));
         robot.sensors[0].timeout_s = Some(0.2);
         assert_eq!(timeout_s(&robot), 0.2);
+    }
+
+    #[test]
+    fn ranges_in_millimetres_and_fields_of_view_in_radians_are_refused() {
+        let error = |change: fn(&mut RangeSensor)| {
+            let mut robot = Robot::small();
+            change(&mut robot.sensors[0]);
+            robot.validate().map_or_else(|error| error.to_string(), |()| String::new())
+        };
+        assert!(error(|sensor| sensor.range_m = 10_000.0).contains("in metres"));
+        assert!(error(|sensor| sensor.field_of_view_deg = 4.19).contains("in radians"));
+        let sonar = |sensor: &mut RangeSensor| (sensor.beams, sensor.field_of_view_deg) = (3, 4.19);
+        assert_eq!(error(sonar), "");
+    }
+
+    #[test]
+    fn a_mount_in_centimetres_is_refused() {
+        let mounted = |x_m: f64| {
+            let mut robot = Robot::jackal();
+            robot.sensors[0].mount.x_m = x_m;
+            robot.validate().map_err(|error| error.to_string())
+        };
+        assert_eq!(mounted(1.0), Ok(()), "on a boom");
+        let error = mounted(12.0).unwrap_err();
+        assert!(
+            error.contains("sensors[0].mount") && error.contains("is it in metres?"),
+            "{error}"
+        );
     }
 
     #[test]

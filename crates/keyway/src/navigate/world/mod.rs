@@ -6,7 +6,7 @@ mod storing;
 
 pub(super) use storing::StoredWorld;
 
-use super::doubts::{Doubt, Doubts};
+use super::doubts::{Doubt, Doubts, ScanFault};
 use super::masks::Masks;
 use super::motors::Motors;
 use super::poses::Poses;
@@ -94,6 +94,9 @@ struct SensorTimes {
     scanned: Option<Time>,
     /// Last scan with a valid beam.
     said: Option<Time>,
+    /// True if the last scan was refused as a repetition.
+    #[serde(default)]
+    repeats: bool,
 }
 
 impl World {
@@ -222,13 +225,23 @@ impl World {
     /// that the robot does not have, scans without valid beams, scans that are not newer than the
     /// last one or older than all remembered poses, and scans that repeat the last ranges from
     /// another pose, unless they show nothing new: such a scan carries no new information,
-    /// whatever its stamp.
+    /// whatever its stamp. Once one is refused of a sensor that is silent, repetitions are refused
+    /// while the robot is stationary, too: otherwise a sensor that hangs would let it start again
+    /// and again.
     fn take_in(&mut self, parts: &FittedStack, scan: &SensorScan<'_>) {
         let Some(time) = Time::of_stamp(scan.stamp_s) else { return };
-        let Some(times) = self.times.get_mut(scan.sensor) else { return };
+        let Some(sensor) = parts.robot.sensors.get(scan.sensor) else { return };
+        let is_silent = self.silent_s(scan.sensor) > sensor.timeout_in_s(parts.robot.cycle_s);
+        let times = &mut self.times[scan.sensor];
+        // A scan that is handed over again says nothing about clocks.
+        let told = self.told.filter(|_| times.scanned != Some(time));
+        let fault = told.and_then(|told| ScanFault::of(scan, time.since_s(told.time)));
+        if let (Some(fault), Some(told)) = (fault, self.told) {
+            self.doubts.note_fault(scan.sensor, told.time, fault);
+        }
         let Some(mut pose) = self.poses.at(time) else { return };
-        let says_nothing = scan.scan.says_nothing();
-        if says_nothing || times.scanned.is_some_and(|last| time <= last) {
+        let is_usable = fault != Some(ScanFault::Bearings) && !scan.scan.says_nothing();
+        if !is_usable || times.scanned.is_some_and(|last| time <= last) {
             return;
         }
         self.now = self.now.max(Some(time));
@@ -238,10 +251,11 @@ impl World {
         let is_same = ranges_m.iter().map(|m| m.to_bits()).eq(given.iter().map(f64::to_bits));
         let (frame, footprint) = (self.known.frame(), &parts.robot.footprint);
         if is_same && scan.scan.has_hits() {
-            if Doubts::has_come_far(velocity, projected.robot(), pose) {
+            if times.repeats || Doubts::has_come_far(velocity, projected.robot(), pose) {
                 self.doubts.note_repeated(scan.sensor, time);
                 self.again.project(frame, footprint, pose, scan);
                 if !is_known(&self.again, &self.obstacles) {
+                    times.repeats |= is_silent;
                     return;
                 }
             } else {
@@ -251,6 +265,7 @@ impl World {
             }
         }
         times.scanned = Some(time);
+        times.repeats = is_same && times.repeats;
         ranges_m.clear();
         ranges_m.extend(given.iter());
         projected.project(frame, footprint, pose, scan);
