@@ -90,7 +90,7 @@ struct Tally {
 
 impl Tally {
     fn add(&mut self, done: &Smoothed, planned_m: f64) {
-        self.keeps_safe_distance += u64::from(done.shortfall_m.is_none());
+        self.keeps_safe_distance += u64::from(done.kept_clearance_m.is_none());
         self.change.push(100.0 * (done.path.length_m() / planned_m - 1.0));
         self.segments.push(done.path.pieces().len() as f64);
     }

@@ -61,7 +61,7 @@ impl Tally {
         };
         let peak = done.path.pieces().iter().map(peak).fold(0.0, f64::max);
         self.peaks.extend((peak > 0.0).then_some(peak));
-        let kept = done.shortfall_m.into_iter().chain(self.least_m);
+        let kept = done.kept_clearance_m.into_iter().chain(self.least_m);
         self.least_m = kept.reduce(f64::min);
     }
 }

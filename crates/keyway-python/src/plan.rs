@@ -103,8 +103,8 @@ impl Plan {
 
     /// Clearance that the path guarantees [m], if it is less than requested; otherwise `None`.
     #[getter]
-    fn shortfall(&self) -> Option<f64> {
-        self.route.smoothing.shortfall_m
+    fn kept_clearance(&self) -> Option<f64> {
+        self.route.smoothing.kept_clearance_m
     }
 
     /// Returns metrics of the smoothed path: `length_m`, `points`, `redundant_points`, `turns`,

@@ -85,7 +85,7 @@ fn smoothed(
         let before_m = clearance.of_line(&line).unwrap();
         let kept_m = bounds.at_least_m + 2.0 * TOLERANCE_M;
         assert!(kept_m >= before_m.min(asked_m), "nearer: {bounds:?}, {}", context());
-        let reported_m = done.shortfall_m.unwrap_or(asked_m);
+        let reported_m = done.kept_clearance_m.unwrap_or(asked_m);
         assert!(kept_m >= reported_m.min(asked_m), "not reported: {bounds:?}, {}", context());
         assert!(
             reported_m.min(before_m) <= bounds.at_most_m + TOLERANCE_M,
@@ -119,7 +119,7 @@ fn check_reported(
     asked_m: f64,
     context: &dyn Fn() -> String,
 ) {
-    let reported_m = done.shortfall_m.map_or(asked_m, |reported_m| reported_m.min(asked_m));
+    let reported_m = done.kept_clearance_m.map_or(asked_m, |reported_m| reported_m.min(asked_m));
     let cell_m = clearance.frame().resolution_m();
     for sample in done.path.samples(done.path.length_m() / 200.0) {
         let at = sample.position();
@@ -284,12 +284,12 @@ fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
         let grid = OccupancyGrid::from_ascii(&rows);
         let clearance = Clearance::new(grid.frame(), grid.occupied());
         for smoother in all() {
-            let reported_m = smooth(&smoother, &line, &clearance, 0.5).shortfall_m;
+            let reported_m = smooth(&smoother, &line, &clearance, 0.5).kept_clearance_m;
             assert!(
                 reported_m.is_some_and(|m| (m - 0.3).abs() < 1e-3),
                 "{smoother:?}: {reported_m:?}"
             );
-            let reported_m = smooth(&smoother, &line, &clearance, 0.3).shortfall_m;
+            let reported_m = smooth(&smoother, &line, &clearance, 0.3).kept_clearance_m;
             assert_eq!(
                 reported_m, None,
                 "{smoother:?}: its own safe distance is not one from the border"
@@ -301,7 +301,7 @@ fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
     let clearance = Clearance::new(grid.frame(), grid.occupied());
     let line = Polyline::new(vec![Point::new(1.05, 1.5), Point::new(3.5, 1.5)]);
     for smoother in all() {
-        let reported_m = smooth(&smoother, &line, &clearance, 0.4).shortfall_m;
+        let reported_m = smooth(&smoother, &line, &clearance, 0.4).kept_clearance_m;
         assert!(
             reported_m.is_some_and(|m| (m - 0.05).abs() < 1e-3),
             "{smoother:?}: {reported_m:?}"
@@ -309,7 +309,7 @@ fn the_border_is_reported_and_so_is_an_end_that_is_too_near() {
     }
     // Outside the map, as in an obstacle, the clearance is 0.
     let line = Polyline::new(vec![Point::new(2.5, 1.5), Point::new(9.5, 1.5)]);
-    let reported_m = Unsmoothed.smooth(&line.into(), &clearance, 0.4).shortfall_m;
+    let reported_m = Unsmoothed.smooth(&line.into(), &clearance, 0.4).kept_clearance_m;
     assert_eq!(reported_m, Some(0.0));
 }
 

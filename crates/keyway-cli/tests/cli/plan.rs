@@ -31,7 +31,7 @@ fn the_report_of_a_path_by_hand() {
             ("turns", Value::is_u64),
             ("turning_angle_deg", Value::is_f64),
             ("min_clearance_m", Value::is_f64),
-            ("shortfall_m", Value::is_null),
+            ("kept_clearance_m", Value::is_null),
             ("waypoints_m", Value::is_array),
             ("cells", Value::is_array),
             ("goal", |v| *v == json!({"index": 0, "cell": [5, 0], "gap_m": 0.0})),
@@ -64,7 +64,7 @@ fn an_end_nearer_than_the_clearance_is_reported_even_without_a_smoother() {
         keyway(folder.path(), &line).expect_code(0)
     };
     let report = plan("--format json").json();
-    assert!((report["shortfall_m"].as_f64().unwrap() - 0.05).abs() < 1e-9, "{report}");
+    assert!((report["kept_clearance_m"].as_f64().unwrap() - 0.05).abs() < 1e-9, "{report}");
     for smoother in ["none", "line-of-sight"] {
         let table = plan(&format!("--smoother {smoother}")).out;
         assert_eq!(table.matches("not kept").count(), 1, "{table}");

@@ -117,7 +117,7 @@ pub fn against_first_latex(all: &[AgainstFirst]) -> String {
     about + &latex_table(&header, &all.iter().map(line).collect::<Vec<_>>(), 3)
 }
 
-const ABOUT: &str = "difference: of the lengths, its median and in brackets its 95 % confidence\n\
+const ABOUT: &str = "difference: of the lengths, its Hodges-Lehmann median and in brackets its 95 % confidence\n\
                      interval; effect: rank-biserial correlation; p: Wilcoxon's signed-rank test of lengths and\n\
                      McNemar's exact test of solved queries, both corrected by Holm's method.";
 

@@ -103,7 +103,7 @@ pub(super) fn row(map: &str, parts: &[(&ContestEntry, &[bool])]) -> CompareRow {
         without_path: all().count() - solved - missed,
         compared: found.len(),
         figures: Summaries::of(&found),
-        shortfalls: found.iter().filter(|found| found.done.shortfall_m.is_some()).count(),
+        shortfalls: found.iter().filter(|found| found.done.kept_clearance_m.is_some()).count(),
         median_plan_us: quantile(plan_us, 0.5),
         mean_plan_cpu_us: plan_cpu_us.and_then(|all| mean(&all)),
         median_smooth_us: quantile(smooth_us, 0.5),
@@ -141,7 +141,7 @@ mod tests {
             non_smooth_turns: 1,
             min_clearance_m: Some(clearance_m),
         };
-        let done = Smoothed { shortfall_m: Some(0.1), ..Smoothed::default() };
+        let done = Smoothed { kept_clearance_m: Some(0.1), ..Smoothed::default() };
         let found = Found {
             smooth: Some(micros(7)),
             done,

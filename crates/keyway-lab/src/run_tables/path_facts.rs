@@ -31,7 +31,7 @@ pub(super) fn smoothed_facts(
     if let Some(time_s) = part.time_s {
         facts.push(("smoothing time", quantity(Some(time_s * 1e3), 3, "ms")));
     }
-    facts.extend(not_kept(targets, part.shortfall_m));
+    facts.extend(not_kept(targets, part.kept_clearance_m));
     let points = format!("{} removed, {} inserted", part.removed_points, part.inserted_points);
     facts.push(("points", points));
     let mut places: BTreeMap<&str, Vec<String>> = BTreeMap::new();
@@ -55,7 +55,7 @@ pub(super) fn smoothed_facts(
 /// Text about a distance that is not kept.
 pub(super) fn not_kept(
     target: impl Display,
-    shortfall_m: Option<f64>,
+    kept_clearance_m: Option<f64>,
 ) -> Option<(&'static str, String)> {
-    shortfall_m.map(|kept_m| ("not kept", format!("{target}, only {kept_m:.3} m")))
+    kept_clearance_m.map(|kept_m| ("not kept", format!("{target}, only {kept_m:.3} m")))
 }

@@ -45,7 +45,7 @@ pub fn route_table(report: &RouteReport, targets: SmoothingTargets) -> String {
     if let Some(smoothed) = &report.smoothed {
         rows.extend(smoothed_facts(smoothed, targets));
     } else {
-        rows.extend(not_kept("the requested clearance", plan.shortfall_m));
+        rows.extend(not_kept("the requested clearance", plan.kept_clearance_m));
     }
     if let Some(ReachedGoal { cell, gap_m, .. }) = report.goal.filter(|goal| goal.gap_m > 0.0) {
         rows.push(("goal not reached", format!("{gap_m:.3} m short of it, in cell {cell}")));

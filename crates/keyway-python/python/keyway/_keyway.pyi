@@ -587,6 +587,11 @@ class Plan:
         Indices of the cells that are jump points, ascending.
         """
     @property
+    def kept_clearance(self, /) -> float | None:
+        """
+        Clearance that the path guarantees [m], if it is less than requested; otherwise `None`.
+        """
+    @property
     def length(self, /) -> float:
         """
         Length of the smoothed path [m].
@@ -606,11 +611,6 @@ class Plan:
     def planner(self, /) -> str:
         """
         Name of the planner.
-        """
-    @property
-    def shortfall(self, /) -> float | None:
-        """
-        Clearance that the path guarantees [m], if it is less than requested; otherwise `None`.
         """
     @property
     def smoother(self, /) -> str:

@@ -101,7 +101,7 @@ pub struct PlanPart {
     /// Smallest distance from the line to an obstacle's square \[m\].
     pub min_clearance_m: Option<f64>,
     /// Certified clearance of the line if it is less than the requested clearance \[m\].
-    pub shortfall_m: Option<f64>,
+    pub kept_clearance_m: Option<f64>,
     /// The line: begins and ends at the given positions, collinear points merged \[m\].
     pub waypoints_m: Option<Polyline>,
     /// Every cell of the grid path.
@@ -120,7 +120,8 @@ impl PlanPart {
         let metrics = PathMetrics::of_polyline(line.polyline(), map.clearance());
         // A cell's centre may have the clearance while another position in the cell does not.
         let clearance_m = map.config().clearance_m;
-        let shortfall_m = Unsmoothed.smooth(line, &map.clearance(), clearance_m).shortfall_m;
+        let kept_clearance_m =
+            Unsmoothed.smooth(line, &map.clearance(), clearance_m).kept_clearance_m;
         Self {
             length_m: Some(metrics.length_m),
             cost_cells: Some(plan.cost.cells()),
@@ -133,7 +134,7 @@ impl PlanPart {
             turns: Some(metrics.turns),
             turning_angle_deg: Some(metrics.turning_angle_deg),
             min_clearance_m: metrics.min_clearance_m,
-            shortfall_m,
+            kept_clearance_m,
             waypoints_m: Some(line.polyline().merged()),
             cells: Some(plan.cells.clone()),
             ..Self::without_path(planner, PlanOutcome::Found, time_s)
@@ -205,7 +206,7 @@ impl PlanPart {
             turns: None,
             turning_angle_deg: None,
             min_clearance_m: None,
-            shortfall_m: None,
+            kept_clearance_m: None,
             waypoints_m: None,
             cells: None,
         }

@@ -22,7 +22,7 @@ pub struct SmoothedPart {
     /// Smallest distance to an obstacle's square \[m\]; for curves, a certified lower bound.
     pub min_clearance_m: Option<f64>,
     /// Certified clearance if it is less than the requested one \[m\].
-    pub shortfall_m: Option<f64>,
+    pub kept_clearance_m: Option<f64>,
     /// Points of the planned line that the path skips.
     pub removed_points: usize,
     /// Corners and control points of the path that are not points of the line.
@@ -47,7 +47,7 @@ impl SmoothedPart {
             turning_angle_deg: metrics.turning_angle_deg,
             non_smooth_turns: metrics.non_smooth_turns,
             min_clearance_m: metrics.min_clearance_m,
-            shortfall_m: done.shortfall_m,
+            kept_clearance_m: done.kept_clearance_m,
             removed_points: done.removed_points,
             inserted_points: done.inserted_points,
             sharp_corners: done.sharp_corners.clone(),

@@ -343,7 +343,10 @@ mod tests {
         // 1.5). From the goal (2.75, 0.75) is visible, at (3, 0.857), but not (2, 1).
         let (points, done) = run(&config(Select::Farthest, 0.0), 0.0);
         assert_eq!(points, [[0.5, 1.5], [2.75, 0.75], [4.5, 1.5]]);
-        assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (2, 1, None));
+        assert_eq!(
+            (done.removed_points, done.inserted_points, done.kept_clearance_m),
+            (2, 1, None)
+        );
         // Backward alone, the points of the line are 0.707 m and 1 m apart: (1.5, 0.5) is visible
         // from the goal, (1, 1) is not, and from (1.5, 0.5) the start is.
         let one_way = |passes| {
@@ -375,12 +378,12 @@ mod tests {
         // (3, 1).
         let expected = [[0.5, 1.5], [1.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&config(Select::Farthest, 0.5), 0.0);
-        assert_eq!((points, done.shortfall_m), (expected.to_vec(), None));
+        assert_eq!((points, done.kept_clearance_m), (expected.to_vec(), None));
         assert_eq!(run(&config(Select::Farthest, 0.0), 0.5).0, expected, "the larger of both");
         // More than the line itself keeps: the line stays as it was, and the shortfall is
         // reported.
         let (points, done) = run(&config(Select::Farthest, 0.6), 0.0);
-        assert_eq!((points, done.shortfall_m), (expected.to_vec(), Some(0.5)));
+        assert_eq!((points, done.kept_clearance_m), (expected.to_vec(), Some(0.5)));
     }
 
     #[test]

@@ -119,7 +119,8 @@ impl Smoother for ContinuousCurvature {
         // Pieces that were certified for the clearance need no second measurement.
         let judged = pieces.iter().filter(|(_, is_certain)| !is_certain).map(|(piece, _)| piece);
         let required = RequiredClearance::new(clearance, clearance_m, 0.0);
-        let shortfall_m = required.shortfall_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
+        let kept_clearance_m =
+            required.kept_clearance_m(judged, Smoothed::CLEARANCE_TOLERANCE_M, 0.0);
         // There is no path only if the coordinates are so large that rounding tears the pieces
         // apart.
         let path = Path::new(pieces.into_iter().map(|(piece, _)| piece).collect())
@@ -129,7 +130,7 @@ impl Smoother for ContinuousCurvature {
             removed_points: count_others(line.merged().points(), &passed),
             inserted_points: CONTROL_POINTS * (points.len() - passed.len()),
             sharp_corners,
-            shortfall_m,
+            kept_clearance_m,
         }
     }
 }

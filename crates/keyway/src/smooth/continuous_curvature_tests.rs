@@ -49,7 +49,7 @@ fn check(
     let clear = line.segments().all(|edge| clearance.is_clear(edge, clearance_m))
         && line.points().iter().all(|&point| clearance.is_clear_point(point, clearance_m));
     assert!(!clear || clearance.is_clear_path(&done.path, clearance_m), "too near");
-    assert!(!clear || done.shortfall_m.is_none());
+    assert!(!clear || done.kept_clearance_m.is_none());
     let kept = clearance.of_path(&done.path, 1e-6).map(|bounds| bounds.at_most_m);
     if let (Some(kept_m), Some(before_m)) = (kept, clearance.of_line(line)) {
         assert!(kept_m >= before_m.min(clearance_m) - 1e-5, "{kept_m} after {before_m}");

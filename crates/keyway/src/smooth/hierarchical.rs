@@ -176,7 +176,7 @@ impl Smoother for HierarchicalSmoothing {
             removed_points: count_others(line.merged().points(), &bends.passed()),
             inserted_points: 2 * bends.radii.iter().filter(|radius| radius.is_ok()).count(),
             sharp_corners: bends.sharp_corners(),
-            shortfall_m: shortfall_m(&path, clearance, &required),
+            kept_clearance_m: kept_clearance_m(&path, clearance, &required),
             path,
         }
     }
@@ -205,13 +205,13 @@ fn inner_layer(
 
 /// The distance that is certainly kept, if it falls short of the required one by more than the
 /// certification tolerance.
-fn shortfall_m(
+fn kept_clearance_m(
     path: &Path,
     clearance: &Clearance<'_>,
     required: &RequiredClearance<'_>,
 ) -> Option<f64> {
     let slack_m = CERTIFIED_CELLS * clearance.frame().resolution_m();
-    required.shortfall_m(path.pieces(), slack_m, 4.0 * slack_m)
+    required.kept_clearance_m(path.pieces(), slack_m, 4.0 * slack_m)
 }
 
 /// The outer layer: start, corners and goal, and the distance of each corner's control nodes.

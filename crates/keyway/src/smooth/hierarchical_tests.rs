@@ -69,7 +69,7 @@ fn the_inner_layer_by_hand() {
     let required = RequiredClearance::new(&clearance, 0.0, 0.7);
     assert_eq!(inner_layer(&line, &clearance, &required), points_of(&[[0.5, 0.5], [5.5, 0.5]]));
     // The distance that is kept is reported, however small the shortfall.
-    let reported_m = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5]], 0.505, 1.0).shortfall_m;
+    let reported_m = smooth(&grid, &[[0.5, 0.5], [5.5, 0.5]], 0.505, 1.0).kept_clearance_m;
     assert!(reported_m.is_some_and(|kept_m| (kept_m - 0.5).abs() < 1e-4), "{reported_m:?}");
 }
 
@@ -137,12 +137,12 @@ fn a_bend_that_comes_too_near_is_halved() {
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
     let done = smooth(&grid, &[line[0], [2.5, 0.5], line[1], line[2]], 1.5, 2.0);
     assert_eq!((done.removed_points, done.inserted_points), (1, 2));
-    assert_eq!((done.sharp_corners.len(), done.shortfall_m), (0, None));
+    assert_eq!((done.sharp_corners.len(), done.kept_clearance_m), (0, None));
     assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]), "{:?}", done.path);
     // The bend cannot keep more than the edges do, and that is reported.
     let done = smooth(&grid, &line, 1.6, 2.0);
     assert!(is_near(done.path.pieces()[1].start(), [4.0, 0.5]));
-    assert!((done.shortfall_m.unwrap() - 1.5).abs() < 1e-4, "{:?}", done.shortfall_m);
+    assert!((done.kept_clearance_m.unwrap() - 1.5).abs() < 1e-4, "{:?}", done.kept_clearance_m);
 }
 
 /// The bend begins at x = (20 + 5 c - 4 R) / 6 for the corner (c, 20). It is too close to the
@@ -192,13 +192,13 @@ fn a_corner_without_room_stays_sharp() {
         (vec![sharp], 0, 0)
     );
     assert_eq!(done.path.length_m(), 10.0);
-    assert!((done.shortfall_m.unwrap() - 0.5).abs() < 1e-9);
+    assert!((done.kept_clearance_m.unwrap() - 0.5).abs() < 1e-9);
     // It is rounded if bends only keep the clearance, here 0. Its middle is (A + 4 corner + B) / 6
     // = (5.5 - 1/6, 0.5 + 1/6), 1/3 m to the right of and below the wall's corner (5, 1).
     let line = [[0.5, 0.5], [5.5, 0.5], [5.5, 5.5]];
     let done = smooth_with(BendsKeep::Clearance, &grid, &line, 0.8, 1.0);
     assert_eq!((done.sharp_corners.len(), done.inserted_points), (0, 2));
-    let kept_m = done.shortfall_m.unwrap();
+    let kept_m = done.kept_clearance_m.unwrap();
     assert!(kept_m <= 2f64.sqrt() / 3.0 && kept_m > 0.4, "{kept_m}");
 }
 

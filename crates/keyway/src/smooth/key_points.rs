@@ -29,7 +29,7 @@
 //!   clearance replaces D.
 //! - d >= D allows for 1e-9 m: beside a wall of 1 m cells d is 0.5 m = D, so a strict test would
 //!   refuse every point there. D is kept from obstacles, not from the map's border.
-//! - If no point of Q satisfies step 3, the pair stays as it is, and [`Smoothed::shortfall_m`]
+//! - If no point of Q satisfies step 3, the pair stays as it is, and [`Smoothed::kept_clearance_m`]
 //!   reports the distance that is kept. Of several points with the same L, the first is taken.
 //! - A second run can shorten the line further, because it has fewer points to stop at.
 //!
@@ -267,7 +267,10 @@ mod tests {
         let (points, done) = run(&line, 0.0);
         assert_eq!(points, [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
         // (2.5, 0.5) is not a corner.
-        assert_eq!((done.removed_points, done.inserted_points, done.shortfall_m), (1, 0, None));
+        assert_eq!(
+            (done.removed_points, done.inserted_points, done.kept_clearance_m),
+            (1, 0, None)
+        );
     }
 
     #[test]
@@ -278,7 +281,7 @@ mod tests {
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&line, 0.5);
         assert_eq!(points, [[0.5, 1.5], [1.5, 0.5], [3.5, 0.5], [4.5, 1.5]]);
-        assert_eq!((done.removed_points, done.shortfall_m), (0, None), "0.5 m is enough");
+        assert_eq!((done.removed_points, done.kept_clearance_m), (0, None), "0.5 m is enough");
         // Over (1.75, 0.5): x + 1.25 y = 2.375, 0.875 / 1.601 = 0.547 m; L = 1.601 + 1.75 = 3.351
         // m.
         let line = [[0.5, 1.5], [1.5, 0.5], [1.75, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
@@ -310,7 +313,7 @@ mod tests {
         let line = [[0.5, 1.5], [1.5, 0.5], [2.5, 0.5], [3.5, 0.5], [4.5, 1.5]];
         let (points, done) = run(&line, 0.6);
         assert_eq!(points, [[0.5, 1.5], [3.5, 0.5], [4.5, 1.5]]);
-        assert_eq!(done.shortfall_m, Some(0.0));
+        assert_eq!(done.kept_clearance_m, Some(0.0));
     }
 
     #[test]

@@ -12,7 +12,7 @@
 //! let line = Polyline::new(detour.to_vec());
 //! let smoother = SmootherConfig::by_name("line-of-sight").expect("a name").build()?;
 //! let done = smoother.smooth(&line.into(), &clearance, 0.3);
-//! assert_eq!((done.path.length_m(), done.shortfall_m), (4.0, None));
+//! assert_eq!((done.path.length_m(), done.kept_clearance_m), (4.0, None));
 //! # Ok::<(), keyway::ConfigError>(())
 //! ```
 //!

@@ -69,7 +69,7 @@ impl<'a> RequiredClearance<'a> {
     /// The distance that the pieces of a path certainly keep if a required distance is not kept:
     /// the smaller of the two. The clearance of curves is known to `tolerance_m`, and a shortfall
     /// of less than `slack_m` is ignored.
-    pub(super) fn shortfall_m<'p>(
+    pub(super) fn kept_clearance_m<'p>(
         &self,
         pieces: impl IntoIterator<Item = &'p PathPiece>,
         tolerance_m: f64,

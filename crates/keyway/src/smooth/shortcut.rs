@@ -21,7 +21,7 @@
 //!   a smoother is given obstacles and distances, not the layers of a search, so the expansion is
 //!   a parameter; [`ShortcutConfig::for_layers`] takes that of the search. A part of the line that
 //!   leads through expanded cells, as it may if the search had a smaller expansion, stays as it
-//!   was. [`Smoothed::shortfall_m`] reports it: n expanded cells are a distance of n cells.
+//!   was. [`Smoothed::kept_clearance_m`] reports it: n expanded cells are a distance of n cells.
 //! - A second run adds that many passes, so it can drop further points. If a run ended because a
 //!   pass dropped no point, a second run changes nothing.
 //! - In addition, a connection is free only if it keeps the required clearance.
@@ -217,17 +217,20 @@ mod tests {
         // (3.5, 0.5) - (1.5, 1.5) and (2.5, 1.5) - (0.5, 0.5) enter the expanded cells, from (1,
         // 1).
         assert_eq!(done.path, (&line).into());
-        assert_eq!(done.shortfall_m, Some(0.5));
+        assert_eq!(done.kept_clearance_m, Some(0.5));
         // The expansion is in cells, whatever their size.
         let frame =
             crate::map::GridFrame::new(5, 3, 0.1, crate::geometry::Pose::default()).unwrap();
         let small = Clearance::new(&frame, grid.occupied());
         let shrunk = line.points().iter().map(|&at| at * 0.1).collect();
         let done = smooth(&ShortcutConfig::PAPER, &Polyline::new(shrunk), &small, 0.0);
-        assert!(done.shortfall_m.is_some_and(|kept_m| (kept_m - 0.05).abs() < 1e-9), "{done:?}");
+        assert!(
+            done.kept_clearance_m.is_some_and(|kept_m| (kept_m - 0.05).abs() < 1e-9),
+            "{done:?}"
+        );
         let far = Polyline::new(points_of(&[[0.05, 0.05], [0.45, 0.05]]));
         assert_eq!(
-            smooth(&ShortcutConfig::PAPER, &far, &small, 0.0).shortfall_m,
+            smooth(&ShortcutConfig::PAPER, &far, &small, 0.0).kept_clearance_m,
             None,
             "1.5 cells away"
         );

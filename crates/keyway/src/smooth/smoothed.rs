@@ -21,7 +21,7 @@ pub struct Smoothed {
     /// requirement is met. The clearance is required from obstacles and from the map's border, a
     /// smoother's own safe distance from obstacles only. If neither is kept, this is the smaller
     /// distance; it is 0 in an obstacle and outside the map.
-    pub shortfall_m: Option<f64>,
+    pub kept_clearance_m: Option<f64>,
 }
 
 /// A corner that was not rounded.
@@ -71,9 +71,9 @@ impl Smoothed {
 
     /// Returns `self` with its shortfall measured.
     pub(super) fn judged(self, required: &RequiredClearance<'_>) -> Self {
-        let shortfall_m =
-            required.shortfall_m(self.path.pieces(), Self::CLEARANCE_TOLERANCE_M, 0.0);
-        Self { shortfall_m, ..self }
+        let kept_clearance_m =
+            required.kept_clearance_m(self.path.pieces(), Self::CLEARANCE_TOLERANCE_M, 0.0);
+        Self { kept_clearance_m, ..self }
     }
 }
 
@@ -113,11 +113,11 @@ mod tests {
         };
         let done = straight(0.29);
         assert_eq!((done.removed_points, done.inserted_points), (2, 1));
-        assert_eq!(done.shortfall_m, None, "0.2907 m below the obstacle");
+        assert_eq!(done.kept_clearance_m, None, "0.2907 m below the obstacle");
         assert_eq!(done.path.length_m(), after.length_m());
         let closer = straight(0.5);
         // The corner (3, 1) is nearest: the line is at 0.5 + 2.5 / 12 there.
         let expected = (1.0 - (0.5 + 2.5 / 12.0)) * 3.0 / 3f64.hypot(0.25);
-        assert!((closer.shortfall_m.unwrap() - expected).abs() < 1e-9, "{closer:?}");
+        assert!((closer.kept_clearance_m.unwrap() - expected).abs() < 1e-9, "{closer:?}");
     }
 }

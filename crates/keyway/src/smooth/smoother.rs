@@ -49,7 +49,7 @@ pub trait Smoother: Debug {
     ///
     /// It keeps `clearance_m`, or the smoother's own safe distance if that is larger (with
     /// [`BendsKeep::Clearance`](super::BendsKeep::Clearance), only straight stretches keep the
-    /// safe distance), wherever the line did. Otherwise [`Smoothed::shortfall_m`] reports the
+    /// safe distance), wherever the line did. Otherwise [`Smoothed::kept_clearance_m`] reports the
     /// distance that is kept. A negative clearance counts as 0.
     fn smooth(&self, line: &PlannedLine, clearance: &Clearance<'_>, clearance_m: f64) -> Smoothed {
         self.smooth_distinct(&distinct(line), clearance, clearance_m.max(0.0))

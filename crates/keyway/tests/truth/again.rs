@@ -64,7 +64,7 @@ fn check(map: &SearchMap, line: &Polyline) -> bool {
     let may_differ_m = ROUNDING_M + 2.0 * OUTSIDE_M * turned_rad(&once.path);
     assert!((before_m - after_m).abs() <= may_differ_m, "{before_m} {after_m}\n{}", context());
     assert_eq!(twice.sharp_corners, once.sharp_corners, "{}", context());
-    let kept_m = |done: &Smoothed| done.shortfall_m.unwrap_or(clearance_m);
+    let kept_m = |done: &Smoothed| done.kept_clearance_m.unwrap_or(clearance_m);
     assert!(kept_m(&twice) >= kept_m(&once) - 2.0 * OUTSIDE_M, "{}", context());
     if clearance_m == 0.0 {
         assert_eq!(twice.path, once.path);

@@ -54,7 +54,11 @@ fn check(map: &SearchMap, classes: &Classes, line: &Polyline) -> bool {
     let smoothed = Taut.smooth(&line.clone().into(), &map.clearance(), 0.0);
     let path = smoothed.path.flattened(0.0);
     let context = || format!("{line:?}\n{path:?}");
-    assert!(smoothed.sharp_corners.is_empty() && smoothed.shortfall_m.is_none(), "{}", context());
+    assert!(
+        smoothed.sharp_corners.is_empty() && smoothed.kept_clearance_m.is_none(),
+        "{}",
+        context()
+    );
     let (before, after) = (in_cells(map, line), in_cells(map, &path).merged());
     assert_eq!(obstacles.class(&after), obstacles.class(&before), "another class: {}", context());
     assert!(Obstacles::is_exact(&after), "{}", context());

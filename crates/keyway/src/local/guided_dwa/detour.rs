@@ -67,8 +67,8 @@ impl DetourConfig {
     /// Derived from the robot, one rule for all maps:
     ///
     /// - `look_ahead_m`: [`Robot::decision_reach_m`];
-    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_or_default_m`]: the robot can
-    ///   turn with that clearance;
+    /// - `clearance_m`: the circumscribed radius and [`Robot::safety_margin_or_default_m`]: the
+    ///   robot can turn with that clearance;
     /// - `reached_m`: the inscribed radius, but at least one cycle of driving: the footprint
     ///   covers the point.
     pub fn for_robot(robot: &Robot) -> Self {

@@ -177,9 +177,9 @@ pub struct StopRuleConfig {
 
 impl StopRuleConfig {
     /// Defaults for a robot: half of the margin that its local planner keeps from obstacles
-    /// ([`Robot::safety_margin_or_default_m`]), so that the gate does not change commands that such a
-    /// planner finds admissible. Moving obstacles are people: they walk at up to 1.5 m/s, and may
-    /// turn around at once.
+    /// ([`Robot::safety_margin_or_default_m`]), so that the gate does not change commands that
+    /// such a planner finds admissible. Moving obstacles are people: they walk at up to 1.5 m/s,
+    /// and may turn around at once.
     pub fn for_robot(robot: &Robot) -> Self {
         Self {
             margin_m: 0.5 * robot.safety_margin_or_default_m(),

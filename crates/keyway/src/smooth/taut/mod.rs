@@ -222,7 +222,7 @@ fn is_as_good(
     // A taut path comes no closer to the border than the line.
     let from_obstacles =
         || required.obstacle_shortfall_m(&smoothed.path, Smoothed::CLEARANCE_TOLERANCE_M);
-    let is_clear = smoothed.shortfall_m.and_then(|_| from_obstacles()).is_none_or(|kept_m| {
+    let is_clear = smoothed.kept_clearance_m.and_then(|_| from_obstacles()).is_none_or(|kept_m| {
         // A path with a clearance of 0 may touch an obstacle, or be in it.
         let was_in = || !clearance.is_clear_path(&Path::from(line), 0.0);
         let is_no_worse = kept_m > 0.0 || clearance.is_clear_path(&smoothed.path, 0.0) || was_in();

@@ -189,7 +189,7 @@ proptest! {
         // If the walk returns to its start, the whole line may disappear.
         prop_assume!(!path.points().is_empty());
         let groups = groups(&grid);
-        prop_assert!(smoothed.sharp_corners.is_empty() && smoothed.shortfall_m.is_none());
+        prop_assert!(smoothed.sharp_corners.is_empty() && smoothed.kept_clearance_m.is_none());
         prop_assert!(map.clearance().is_clear_path(&smoothed.path, 0.0));
         prop_assert!(path.length_m() <= line.length_m() + 1e-9);
         prop_assert!(is_taut(&path, &map), "{:?}", path);
@@ -217,7 +217,7 @@ proptest! {
         let length_m = smoothed.path.length_m();
         prop_assert!(length_m <= line.length_m() + 1e-9);
         let is_kept = map.clearance().is_clear_path(&smoothed.path, asked);
-        prop_assert_eq!(smoothed.shortfall_m.is_none() || !is_kept, true);
+        prop_assert_eq!(smoothed.kept_clearance_m.is_none() || !is_kept, true);
         if planned >= asked {
             prop_assert!(is_kept);
             prop_assert!(smoothed.sharp_corners.is_empty(), "{:?}", smoothed);
@@ -227,7 +227,7 @@ proptest! {
             let to_border = |&at: &Point| map.clearance().to_border(at);
             let border_m = line.points().iter().map(to_border).fold(asked, f64::min);
             let before_m = map.clearance().of_line(&line).map_or(border_m, |m| m.min(border_m));
-            prop_assert!(smoothed.shortfall_m.unwrap_or(asked) >= before_m - 1e-8);
+            prop_assert!(smoothed.kept_clearance_m.unwrap_or(asked) >= before_m - 1e-8);
         }
         check_corners(&grid, &line, &smoothed.path, asked)?;
         if smoothed.sharp_corners.is_empty() {
@@ -258,7 +258,7 @@ proptest! {
         let path = smoothed.path.flattened(1e-4);
         prop_assert_eq!(word(&path, &groups), word(&line, &groups), "{:?}", path);
         if share < 1.0 {
-            prop_assert!(smoothed.sharp_corners.is_empty() && smoothed.shortfall_m.is_none(), "{:?}", smoothed);
+            prop_assert!(smoothed.sharp_corners.is_empty() && smoothed.kept_clearance_m.is_none(), "{:?}", smoothed);
             prop_assert!(clearance.is_clear_path(&smoothed.path, asked_m));
             check_pieces(&smoothed.path)?;
             let is_smooth = smoothed.path.joint_turns_rad().iter().all(|turn| turn.abs() < 1e-4);
@@ -286,7 +286,7 @@ proptest! {
         let longer = taut(&Polyline::new(points), &map.clearance(), asked);
         let smoothed = taut(&line, &map.clearance(), asked);
         prop_assert!((longer.path.length_m() - smoothed.path.length_m()).abs() < 1e-6, "{:?}", longer);
-        prop_assert!(longer.sharp_corners.is_empty() && longer.shortfall_m.is_none());
+        prop_assert!(longer.sharp_corners.is_empty() && longer.kept_clearance_m.is_none());
     }
 
     /// Points on edges, corners and centres of cells, which rounding moves on a turned map.

@@ -85,7 +85,7 @@ fn bends_are_arcs_of_the_clearance() {
     let expected = 1.5 + FRAC_PI_2 * 0.5 + 0.5;
     assert!((smoothed.path.length_m() - expected).abs() < 1e-9, "{smoothed:?}");
     assert_eq!(smoothed.path.pieces().len(), 3);
-    assert_eq!(smoothed.shortfall_m, None);
+    assert_eq!(smoothed.kept_clearance_m, None);
     assert!(smoothed.path.joint_turns_rad().iter().all(|turn| turn.abs() < 1e-6));
     assert!(smoothed.sharp_corners.is_empty());
 }
@@ -105,7 +105,7 @@ fn bends_also_where_the_border_is_nearer_than_the_clearance() {
             let world = points.map(|at| frame.world_from_grid(at));
             let smoothed = taut(&Polyline::new(world.to_vec()), &clearance, 0.7 * resolution_m);
             assert!(smoothed.sharp_corners.is_empty(), "{smoothed:?}");
-            let reported_cells = smoothed.shortfall_m.map(|kept_m| kept_m / resolution_m);
+            let reported_cells = smoothed.kept_clearance_m.map(|kept_m| kept_m / resolution_m);
             assert!(reported_cells.is_some_and(|kept| (kept - 0.5).abs() < 1e-9), "{smoothed:?}");
             assert_eq!(smoothed.path.pieces().len(), 3, "two tangents and an arc: {smoothed:?}");
         }
@@ -143,7 +143,7 @@ fn where_the_line_is_too_near_its_own_distance_is_kept() {
     // The line passes (1, 2) at 0.5 m on both sides of the corner; 0.8 m is required.
     let rows = ["....", "....", "#...", "#..."];
     let smoothed = pulled_on(&rows, &[[1.5, 0.5], [1.5, 2.5], [0.5, 2.5]], 0.8);
-    assert!((smoothed.shortfall_m.unwrap() - 0.5).abs() < 1e-6, "{smoothed:?}");
+    assert!((smoothed.kept_clearance_m.unwrap() - 0.5).abs() < 1e-6, "{smoothed:?}");
     assert!((smoothed.path.length_m() - 2.0 - FRAC_PI_2 * 0.5).abs() < 1e-6);
     // At 1.5 m, far to the right of the corner.
     let rows = ["......", "......", "......", "......", "#.....", "#....."];
@@ -226,7 +226,7 @@ fn a_disc_that_is_entered_by_a_hair_bends_the_path() {
     for inside in [1e-8, 3e-7] {
         let far = 0.5 - inside;
         let done = pulled_on(&rows, &[at(far, -1.0), at(1.2, 0.0), at(far, 1.0)], 0.5);
-        assert_eq!((done.path.pieces().len(), done.shortfall_m), (3, None), "{done:?}");
+        assert_eq!((done.path.pieces().len(), done.kept_clearance_m), (3, None), "{done:?}");
     }
 }
 
@@ -365,5 +365,5 @@ fn where_rounding_defeats_the_string_the_path_is_as_good_as_the_line() {
     let there_and_back = [[1.5, 1.5], [1.5, 7.5], [3.5, 5.5], [2.5, 5.5], [1.5, 7.5], [1.5, 1.5]];
     let done = pulled_on(&rows, &there_and_back, 0.574_264_274_202_788_1);
     assert!(done.path.length_m() <= line(&there_and_back).length_m() + 1e-9);
-    assert!(done.shortfall_m.is_none_or(|kept_m| kept_m > 0.5 - 1e-6), "{done:?}");
+    assert!(done.kept_clearance_m.is_none_or(|kept_m| kept_m > 0.5 - 1e-6), "{done:?}");
 }
