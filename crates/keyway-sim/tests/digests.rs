@@ -136,7 +136,12 @@ fn episode(known: &OccupancyGrid, robot: &Robot, stack: &str, moving: u32) -> Ro
     episode.robots[0].stack = Stack::by_name(stack, robot).unwrap();
     let obstacles = RandomObstacles {
         unknown: Some(RandomUnknown { count: 3, radius_m: [0.1, 0.2] }),
-        moving: Some(RandomMoving { count: moving, radius_m: [0.2, 0.3], speed_mps: [0.2, 0.6] }),
+        moving: Some(RandomMoving {
+            count: moving,
+            radius_m: [0.2, 0.3],
+            speed_mps: [0.2, 0.6],
+            gives_way: false,
+        }),
         near_way_m: RandomObstacles::USUAL_NEAR_WAY_M,
         free_ends_m: RandomObstacles::USUAL_FREE_ENDS_M,
     };

@@ -186,6 +186,27 @@ impl EpisodeObserver for Errors {
     }
 }
 
+/// A goal that is missed by an error of the localisation is no robot that is stuck.
+#[test]
+fn a_robot_that_believed_it_was_at_its_goal_is_told_apart() {
+    let drifting = LocalisationFaults { drift: 0.1, ..LocalisationFaults::default() };
+    let noisy = episode(OPEN).with_each_robot(|robot| robot.disturbances.localisation = drifting);
+    let report = run_episode(&noisy).unwrap().first();
+    assert_eq!(report.outcome, EpisodeOutcome::Stuck);
+    let reason = report.reason.unwrap();
+    let off_m = reason.split("but it was ").nth(1).and_then(|rest| rest.split(' ').next());
+    let off_m: f64 =
+        off_m.and_then(|off_m| off_m.parse().ok()).unwrap_or_else(|| panic!("{reason}"));
+    let driven_m = report.run.unwrap().length_m;
+    assert!((off_m - 0.1 * driven_m).abs() < 0.25, "{off_m} {driven_m}");
+    assert!(!reason.contains("the last problem"), "{reason}");
+    // The robot knows nothing of the rules of the scene.
+    let mut strict = episode(OPEN);
+    strict.rules.goal_tolerance_m = Some(1e-6);
+    let reason = run_episode(&strict).unwrap().first().reason.unwrap();
+    assert!(reason.contains("within its own tolerance of"), "{reason}");
+}
+
 #[test]
 fn a_disturbed_robot_gets_through_a_hall() {
     let mut errors = Errors::default();

@@ -78,7 +78,10 @@ fn tables_of_barn_give_a_scene_for_each_world() {
     let cut = [("worlds.csv", &b"world,x,y\n7,1,2\n"[..])];
     let (refused, _) = with_files(&mut page, &ask_for, &cut);
     let message = refused["error"]["message"].as_str().unwrap();
-    assert!(message.starts_with("worlds.csv: line 2: missing field `radius`"), "{message}");
+    assert!(
+        message.starts_with("worlds.csv: line 1: the header has no column `radius`"),
+        "{message}"
+    );
 }
 
 #[test]

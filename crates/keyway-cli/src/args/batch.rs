@@ -271,6 +271,9 @@ pub(crate) struct PairsArgs {
     #[arg(long, allow_negative_numbers = true)]
     #[arg(value_name = "N", default_value_t = 0, value_parser = whole::<u32, 0, 1000>)]
     pub(crate) moving: u32,
+    /// Moving obstacles give way to robots and to each other, as people do, instead of to nothing
+    #[arg(long, requires = "moving")]
+    pub(crate) gives_way: bool,
     /// Folder for the scenes
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,

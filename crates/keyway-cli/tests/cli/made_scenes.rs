@@ -35,7 +35,7 @@ fn worlds_of_barn_become_scenes() {
     write(&folder, "c.csv", "world,x,y\n7,-2.0,8.0\n");
     let error = keyway(folder.path(), line).expect_code(2).json();
     let message = error["message"].as_str().unwrap();
-    assert!(message.starts_with("c.csv: line 2: missing field `radius`"), "{message}");
+    assert!(message.starts_with("c.csv: line 1: the header has no column `radius`"), "{message}");
 }
 
 #[test]
@@ -131,7 +131,16 @@ fn pairs_become_scenes_with_other_obstacles_for_each_seed() {
     assert!(!batch.err.contains("error"), "{}", batch.err);
     write(&folder, "data/pairs.csv", &pairs.replace("../small_house.yaml", "none.yaml"));
     let error = keyway(folder.path(), line).expect_code(2);
-    assert!(error.err.contains("pair 0: there is no map data/none.yaml"), "{}", error.err);
+    assert!(
+        error.err.contains("pair 0, counted from 0: there is no map data/none.yaml"),
+        "{}",
+        error.err
+    );
+    // A pair that is given twice would be one run that counts as two.
+    let first = pairs.lines().nth(1).unwrap();
+    write(&folder, "data/pairs.csv", &format!("{pairs}{first}\n"));
+    let error = keyway(folder.path(), line).expect_code(2);
+    assert!(error.err.contains("are the same: give each pair once"), "{}", error.err);
 }
 
 /// On the scenes of the repository, A* has the published length, and the command writes the same

@@ -1,5 +1,6 @@
 //! Comparison of each stack with the first one, with significance tests.
 
+use super::independent::independent;
 use super::record::Record;
 use super::row::Row;
 use crate::significance::{Differences, holm_of, p_value};
@@ -36,8 +37,9 @@ const SAME_S: f64 = 1e-6;
 /// Compares all other stacks with the first one.
 pub fn against_first(records: &[Record], stacks: &[String]) -> Vec<AgainstFirst> {
     let Some((first, others)) = stacks.split_first() else { return Vec::new() };
+    let runs = independent(records);
     let mut all: Vec<AgainstFirst> =
-        others.iter().map(|other| compared(records, first, other)).collect();
+        others.iter().map(|other| compared(&runs, first, other)).collect();
     let reached = holm_of(all.iter().map(|one| one.reached_p));
     let time = holm_of(all.iter().map(|one| one.time_p));
     for (one, (reached_p, time_p)) in all.iter_mut().zip(reached.into_iter().zip(time)) {
@@ -46,9 +48,9 @@ pub fn against_first(records: &[Record], stacks: &[String]) -> Vec<AgainstFirst>
     all
 }
 
-fn compared<'a>(records: &'a [Record], first: &str, other: &str) -> AgainstFirst {
+fn compared<'a>(runs: &[&'a Row], first: &str, other: &str) -> AgainstFirst {
     let of = |stack: &str| -> Vec<&'a Row> {
-        records.iter().map(|record| &record.run).filter(|run| run.stack == stack).collect()
+        runs.iter().copied().filter(|run| run.stack == stack).collect()
     };
     let firsts: HashMap<(&str, u64), &Row> =
         of(first).into_iter().map(|run| ((run.scene.as_str(), run.seed), run)).collect();
@@ -123,5 +125,6 @@ pub fn against_first_latex(all: &[AgainstFirst]) -> Option<String> {
     Some(about + &latex_table(&WITH_UNITS, &lines, 1))
 }
 
-const ABOUT: &str = "reached alone: runs in which only this stack : only the first one reached the goal; time: median of the differences [s]\n\
-                     and its 95 % interval, if both did; p: McNemar's exact test, Wilcoxon's signed-rank test, both corrected (Holm).";
+const ABOUT: &str = "reached alone: runs in which only this stack : only the first one reached the goal; time: Hodges-Lehmann median of the\n\
+                     differences [s] and its 95 % interval, if both did; p: McNemar's exact test, Wilcoxon's signed-rank test, both corrected\n\
+                     for all stacks (Holm). The runs of a scene with different seeds count as independent.";

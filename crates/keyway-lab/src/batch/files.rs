@@ -1,5 +1,6 @@
 //! The files that a batch writes.
 
+use super::by_scene::{SceneSummary, scenes_markdown};
 use super::part::Part;
 use super::wins::Contest;
 use super::wins_text::wins_markdown;
@@ -22,13 +23,14 @@ const SUMMARY_MD: &str = "summary.md";
 const SUMMARY_TEX: &str = "summary.tex";
 const AGAINST_CSV: &str = "against_first.csv";
 const AGAINST_TEX: &str = "against_first.tex";
+const BY_SCENE_CSV: &str = "by_scene.csv";
 const WINS_CSV: &str = "wins.csv";
 const WINS_MD: &str = "wins.md";
 
 /// All files except pictures: the runs in two formats, their robots if there are several, the
-/// times, the part of a batch, the summary, the comparison with the first stack, and the wins of
-/// the first stack. Tables are for programs, for display and for papers.
-pub(super) const TABLES: [&str; 13] = [
+/// times, the part of a batch, the summary, the comparison with the first stack, the results by
+/// scene, and the wins of the first stack. Tables are for programs, for display and for papers.
+pub(super) const TABLES: [&str; 14] = [
     RUNS,
     RUNS_CSV,
     ROBOTS,
@@ -40,6 +42,7 @@ pub(super) const TABLES: [&str; 13] = [
     SUMMARY_TEX,
     AGAINST_CSV,
     AGAINST_TEX,
+    BY_SCENE_CSV,
     WINS_CSV,
     WINS_MD,
 ];
@@ -83,11 +86,14 @@ pub(super) fn write_runs(
 pub(super) fn write_summaries(
     stacks: &[StackSummary],
     against_first: &[AgainstFirst],
+    scenes: &[SceneSummary],
     out: &mut OutDir,
 ) -> Result<(), ResultsError> {
     out.write(SUMMARY_CSV, csv(stacks).as_bytes())?;
     out.write(AGAINST_CSV, csv(against_first).as_bytes())?;
-    let text = summary_markdown(stacks) + &against_first_markdown(against_first);
+    out.write(BY_SCENE_CSV, csv(scenes).as_bytes())?;
+    let by_scene = scenes_markdown(scenes).unwrap_or_default();
+    let text = summary_markdown(stacks) + &against_first_markdown(against_first) + &by_scene;
     out.write(SUMMARY_MD, text.as_bytes())?;
     out.write(SUMMARY_TEX, summary_latex(stacks).as_bytes())?;
     match against_first_latex(against_first) {

@@ -12,11 +12,13 @@
 //! and on any number of threads.
 
 mod against_first;
+mod by_scene;
 mod clutter;
 mod drive;
 mod earlier;
 mod error;
 mod files;
+mod independent;
 mod keep;
 mod kept;
 mod limits;
@@ -43,6 +45,7 @@ mod wins_text;
 pub use against_first::{
     AgainstFirst, against_first, against_first_latex, against_first_markdown, against_first_table,
 };
+pub use by_scene::{SceneSummary, scene_summaries, scenes_table};
 pub use error::BatchError;
 pub use keep::Keep;
 pub use part::{Shard, ShardError};

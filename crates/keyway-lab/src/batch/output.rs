@@ -6,7 +6,7 @@ use super::part::Part;
 use super::wins::Contest;
 use super::{
     BatchError, BatchReport, BatchWarning, PictureFile, Pictures, Record, StackCycles,
-    against_first, summaries,
+    against_first, scene_summaries, summaries,
 };
 use crate::progress::Progress;
 use crate::results::{OutDir, OutputLock};
@@ -50,7 +50,8 @@ impl<'a> Output<'a> {
         let names: Vec<String> = stacks.iter().map(|summary| summary.stack.clone()).collect();
         let against_first = against_first(records, &names);
         write_runs(records, part, &mut self.folder)?;
-        write_summaries(&stacks, &against_first, &mut self.folder)?;
+        let scenes = scene_summaries(records);
+        write_summaries(&stacks, &against_first, &scenes, &mut self.folder)?;
         let contest = Contest::of(records, &names);
         write_wins(records, &contest, &mut self.folder)?;
         let wins = contest.wins;
@@ -68,6 +69,7 @@ impl<'a> Output<'a> {
             runs: records.len(),
             stacks,
             against_first,
+            scenes,
             wins,
             cycles,
             files: written.iter().map(|path| path.display().to_string()).collect(),

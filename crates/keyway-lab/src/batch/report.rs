@@ -1,6 +1,6 @@
 //! Report of a batch.
 
-use super::{AgainstFirst, Record, StackSummary, Wins};
+use super::{AgainstFirst, Record, SceneSummary, StackSummary, Wins};
 use crate::measure::mean;
 use crate::table::{number, paragraph};
 use serde::Serialize;
@@ -17,6 +17,8 @@ pub struct BatchReport {
     pub stacks: Vec<StackSummary>,
     /// The stacks but the first, each compared with the first.
     pub against_first: Vec<AgainstFirst>,
+    /// Results of each stack in each scene.
+    pub scenes: Vec<SceneSummary>,
     /// Wins and losses of the first stack against each other one, by each measure.
     pub wins: Vec<Wins>,
     /// Wall-clock time of a decision, by stack.

@@ -1,5 +1,6 @@
 //! Summary of the runs of each stack.
 
+use super::independent::independent;
 use super::record::Record;
 use super::row::{ContactWhile, Row};
 use crate::measure::mean;
@@ -17,6 +18,10 @@ pub struct StackSummary {
     pub stack: String,
     pub(super) runs: usize,
     pub(super) reached: usize,
+    /// Runs that count in shares, means and intervals, and those of them that reached the goal: a
+    /// scene in which every seed gives the same runs counts once.
+    pub(super) independent_runs: usize,
+    pub(super) independent_reached: usize,
     /// Wilson's 95 % interval of the share of runs that reached the goal.
     pub(super) ci_low_reached: Option<f64>,
     pub(super) ci_high_reached: Option<f64>,
@@ -54,32 +59,37 @@ pub fn summaries(records: &[Record]) -> Vec<StackSummary> {
             names.push(&record.run.stack);
         }
     }
+    let independent = independent(records);
     let of = |name: &str| {
         let runs = records.iter().map(|record| &record.run).filter(|run| run.stack == name);
-        summary(name, &runs.collect::<Vec<_>>())
+        let counted = independent.iter().copied().filter(|run| run.stack == name);
+        summary(name, &runs.collect::<Vec<_>>(), &counted.collect::<Vec<_>>())
     };
     names.into_iter().map(of).collect()
 }
 
-fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
+/// Summary of the runs of a stack: counts of all, shares and means of those that are
+/// `independent`.
+fn summary(stack: &str, runs: &[&Row], independent: &[&Row]) -> StackSummary {
     let count = |is: &dyn Fn(&Row) -> bool| runs.iter().filter(|run| is(run)).count();
     let of = |outcome: EpisodeOutcome| count(&|run| run.outcome == outcome);
     let touched = |while_: ContactWhile| count(&|run| run.contact == Some(while_));
-    let reached = |get: fn(&Row) -> Option<f64>| -> Vec<f64> {
-        let reached = runs.iter().filter(|run| run.outcome == EpisodeOutcome::Reached);
-        reached.filter_map(|run| get(run)).collect()
-    };
+    let reached = |get| of_reached(independent, get);
     let clearances = reached(|run| run.min_clearance_m);
-    let has_reached = runs.iter().map(|run| run.outcome == EpisodeOutcome::Reached);
-    let rate = Rate::of(has_reached).interval(Confidence::USUAL);
     let time = Sample::new(reached(|run| run.time_s)).ok();
-    let score = Sample::new(runs.iter().filter_map(|run| run.score).collect()).ok();
+    let score = Sample::new(independent.iter().filter_map(|run| run.score).collect()).ok();
+    let has_reached = |run: &&&Row| run.outcome == EpisodeOutcome::Reached;
+    let independent_reached = independent.iter().filter(has_reached).count();
+    let rate = Rate::of(independent.iter().map(|run| has_reached(&run)));
+    let rate = rate.interval(Confidence::USUAL);
     let time_ends = time.as_ref().and_then(mean_interval);
     let score_ends = score.as_ref().and_then(mean_interval);
     StackSummary {
         stack: stack.to_owned(),
         runs: runs.len(),
         reached: of(EpisodeOutcome::Reached),
+        independent_runs: independent.len(),
+        independent_reached,
         ci_low_reached: rate.map(|ends| ends.low),
         ci_high_reached: rate.map(|ends| ends.high),
         robots: runs.iter().map(|run| run.robots).sum(),
@@ -109,7 +119,13 @@ fn summary(stack: &str, runs: &[&Row]) -> StackSummary {
     }
 }
 
-/// Interval with a fixed seed, so that the same runs give the same bytes.
+/// Values of the runs that reached the goal.
+fn of_reached(runs: &[&Row], get: fn(&Row) -> Option<f64>) -> Vec<f64> {
+    let reached = runs.iter().filter(|run| run.outcome == EpisodeOutcome::Reached);
+    reached.filter_map(|run| get(run)).collect()
+}
+
+/// Interval of the mean with a fixed seed, so that the same runs give the same bytes.
 fn mean_interval(sample: &Sample) -> Option<Interval> {
     sample.mean_interval(Confidence::USUAL, 0)
 }
@@ -149,7 +165,10 @@ impl Shown {
             let cells = cells(stack).into_iter().enumerate();
             cells.filter_map(|(i, cell)| is_shown(i).then_some(cell)).collect()
         };
-        let about = if is_team { format!("{ABOUT}\n{ABOUT_ROBOTS}") } else { ABOUT.to_owned() };
+        let is_repeated = stacks.iter().any(|stack| stack.independent_runs < stack.runs);
+        let more = [(is_team, ABOUT_ROBOTS), (is_repeated, ABOUT_REPEATED)];
+        let more = more.into_iter().filter_map(|(is_said, text)| is_said.then_some(text));
+        let about = std::iter::once(ABOUT).chain(more).collect::<Vec<_>>().join("\n");
         Self { header, lines: stacks.iter().map(line).collect(), about }
     }
 }
@@ -157,7 +176,7 @@ impl Shown {
 /// Cells of a stack: contacts while driving and while standing, and the other runs that did not
 /// reach the goal.
 fn cells(summary: &StackSummary) -> Vec<String> {
-    let share = summary.reached as f64 / summary.runs as f64;
+    let share = summary.independent_reached as f64 / summary.independent_runs as f64;
     let robots_share = f64::from(summary.robots_reached) / f64::from(summary.robots);
     let others = summary.stuck + summary.timeout + summary.no_path;
     let reached = [summary.ci_low_reached, summary.ci_high_reached];
@@ -206,7 +225,10 @@ pub(super) fn markdown_table(header: &[&str], lines: impl Iterator<Item = Vec<St
 
 const ABOUT: &str = "reached [%], with its 95 % interval; contacts: while driving + while stationary; stuck: includes timeouts and runs\n\
                      without a path. time [s], length [m], speed [m/s] and clearance [m] are means of the runs that reached the goal,\n\
-                     the score is the mean of all runs; in brackets: 95 % intervals of the means.";
+                     the score is the mean of all runs; in brackets: 95 % intervals of the means. Stacks that reach the goal in\n\
+                     different runs have means of different runs: the paired differences compare the same ones.";
+
+const ABOUT_REPEATED: &str = "A scene in which every seed gave the same runs counts once in shares, means, intervals and tests.";
 
 const ABOUT_ROBOTS: &str = "With several robots, a run reaches the goal if all robots do: its time is that of the last robot, its length the sum,\n\
                             its clearance the smallest. robots [%]: robots that reached their own goals.";

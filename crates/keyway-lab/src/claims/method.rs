@@ -109,7 +109,8 @@ impl Method {
         near_way_m: f64,
     ) -> Self {
         let radius_m = [HALF_CELL_M; 2];
-        let moving = RandomMoving { count: walking, radius_m, speed_mps: WALKING_MPS };
+        let moving =
+            RandomMoving { count: walking, radius_m, speed_mps: WALKING_MPS, gives_way: false };
         let unknown = RandomObstacles {
             unknown: Some(RandomUnknown { count: standing, radius_m }),
             moving: if walking > 0 { Some(moving) } else { None },

@@ -51,7 +51,7 @@ pub enum ScenesError {
     #[error(transparent)]
     Wall(ConfigError),
     /// A pair names a map that does not exist.
-    #[error("{}: pair {pair}: there is no map {}", pairs.display(), map.display())]
+    #[error("{}: pair {pair}, counted from 0: there is no map {}", pairs.display(), map.display())]
     NoMap {
         /// The table of pairs.
         pairs: PathBuf,
@@ -61,12 +61,27 @@ pub enum ScenesError {
         map: PathBuf,
     },
     /// A pair makes no scene.
-    #[error("pair {pair}: {reason}")]
+    #[error("pair {pair}, counted from 0: {reason}")]
     Pair {
         /// The pair, from 0.
         pair: usize,
         /// Error of the scene.
         reason: SceneError,
+    },
+    /// A pair is given twice: without other obstacles, a batch would drive the same run twice, and
+    /// count both.
+    #[error(
+        "{}: pairs {first} and {pair}, counted from 0, are the same: give each pair once, and drive it with several seeds \
+         (`batch --seeds`)",
+        pairs.display()
+    )]
+    SamePair {
+        /// The table of pairs.
+        pairs: PathBuf,
+        /// The pair, from 0.
+        pair: usize,
+        /// The earlier one, from 0.
+        first: usize,
     },
     /// The system cannot resolve a path.
     #[error("{}: {reason}", path.display())]
@@ -131,7 +146,10 @@ impl ScenesError {
             Self::Cylinders { .. } => "cylinders",
             Self::NoKeyFrames { .. } => "worlds",
             Self::KeyFrames { .. } => "key_frames",
-            Self::NoMap { .. } | Self::Pair { .. } | Self::Unnameable { .. } => "pairs",
+            Self::NoMap { .. }
+            | Self::SamePair { .. }
+            | Self::Pair { .. }
+            | Self::Unnameable { .. } => "pairs",
             Self::Robot(_) => "robot",
             Self::Unknown { .. } => "names",
             Self::TooFew { .. } => "count",

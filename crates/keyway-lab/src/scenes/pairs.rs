@@ -8,6 +8,7 @@ use keyway::robot::Robot;
 use keyway_sim::episode::{RandomMoving, RandomObstacles, RandomUnknown, Start};
 use keyway_sim::scene_files::SceneFile;
 use serde::Deserialize;
+use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
 /// Sizes of posts and boxes on the floor \[m\].
@@ -29,6 +30,8 @@ pub struct PairsRequest {
     pub unknown: u32,
     /// Number of random moving obstacles.
     pub moving: u32,
+    /// True if the moving obstacles give way to robots and to each other.
+    pub gives_way: bool,
     /// Folder of the scenes: their paths of maps and robots are relative to it.
     pub folder: PathBuf,
 }
@@ -61,11 +64,24 @@ impl PairsRequest {
     /// Returns [`ScenesError`] if the table, a map in it or the robot cannot be used.
     pub fn scenes(&self) -> Result<Vec<NamedScene>, ScenesError> {
         let pairs: Vec<Pair> = some_rows(&self.pairs).map_err(ScenesError::of_table("pairs"))?;
+        self.refuse_the_same(&pairs)?;
         let folder = resolved(&self.folder, "folder")?;
         let robot = self.robot_in(&folder)?;
         let common = Common { folder, robot };
         let named = |(index, pair): (usize, &Pair)| self.scene(index, pair, &common);
         pairs.iter().enumerate().map(named).collect()
+    }
+
+    fn refuse_the_same(&self, pairs: &[Pair]) -> Result<(), ScenesError> {
+        let mut firsts = HashMap::new();
+        for (pair, own) in pairs.iter().enumerate() {
+            let ends = [own.start_x_m, own.start_y_m, own.goal_x_m, own.goal_y_m];
+            let first = *firsts.entry((&own.map, ends.map(f64::to_bits))).or_insert(pair);
+            if first < pair {
+                return Err(ScenesError::SamePair { pairs: self.pairs.clone(), pair, first });
+            }
+        }
+        Ok(())
     }
 
     fn scene(&self, index: usize, pair: &Pair, common: &Common) -> Result<NamedScene, ScenesError> {
@@ -94,6 +110,7 @@ impl PairsRequest {
             count: self.moving,
             radius_m: MOVING_RADIUS_M,
             speed_mps: MOVING_SPEED_MPS,
+            gives_way: self.gives_way,
         };
         (self.unknown + self.moving > 0).then(|| RandomObstacles {
             unknown: (self.unknown > 0).then_some(unknown),

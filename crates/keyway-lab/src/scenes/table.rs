@@ -48,15 +48,30 @@ pub(super) fn rows_from_bytes<T: DeserializeOwned>(
 
 fn rows_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, TableError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let blame = |error: csv::Error| TableError::Line {
-        path: path.to_owned(),
-        line: error.position().map(csv::Position::line),
-        reason: match error.kind() {
-            csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
-            _ => error.to_string(),
-        },
-    };
-    reader.deserialize().collect::<Result<_, _>>().map_err(blame)
+    let rows = reader.deserialize().collect::<Result<_, csv::Error>>();
+    rows.map_err(|error| {
+        let line = error.position().map(csv::Position::line);
+        let (line, reason) = match error.kind() {
+            csv::ErrorKind::Deserialize { err, .. } => match missing_column(&err.to_string()) {
+                Some(column) => (Some(1), no_column(column, &mut reader)),
+                None => (line, err.to_string()),
+            },
+            _ => (line, error.to_string()),
+        };
+        TableError::Line { path: path.to_owned(), line, reason }
+    })
+}
+
+/// The column that an error of the parser misses: it blames the first row for a fault of the
+/// header.
+fn missing_column(message: &str) -> Option<&str> {
+    message.strip_prefix("missing field `")?.strip_suffix('`')
+}
+
+fn no_column(column: &str, reader: &mut csv::Reader<&[u8]>) -> String {
+    // The header has been read before the first row.
+    let header = reader.headers().map(|names| names.iter().collect::<Vec<_>>().join(", "));
+    format!("the header has no column `{column}`, but: {}", header.unwrap_or_default())
 }
 
 /// Reads all lines below the header, and refuses a table without any.
@@ -100,7 +115,7 @@ mod tests {
     #[test]
     fn errors_name_file_line_and_column() {
         for (text, expected) in [
-            (&b"world,y\n7,1\n"[..], "/a.csv: line 2: missing field `x`"),
+            (&b"world,y\n7,1\n"[..], "/a.csv: line 1: the header has no column `x`, but: world, y"),
             (b"world,x\n7,1\n8,wide\n", "/a.csv: line 3: field 1: invalid float literal"),
             (b"world,x\n", "/a.csv: it has no lines below the header"),
             (b"world,x\n7,\xff\n", "/a.csv: line 2 is not UTF-8 text (byte 3 of the line is 0xff)"),

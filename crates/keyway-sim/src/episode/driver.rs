@@ -181,6 +181,7 @@ impl<'a> Ready<'a> {
             decisions_s: 0.0,
             passed_s: Vec::new(),
             blocked: None,
+            arrived_s: None,
             noticed: Vec::new(),
         })))
     }
@@ -254,6 +255,8 @@ struct Driver<'a> {
     passed_s: Vec<f64>,
     /// The last time at which the robot was blocked \[s\], and the reason, if any.
     blocked: Option<(f64, Blocked)>,
+    /// The first time at which the navigator reported its arrival, after any problem \[s\].
+    arrived_s: Option<f64>,
     /// The doubts of the run, one of each kind.
     noticed: Vec<Doubt>,
 }
@@ -279,14 +282,17 @@ impl Driver<'_> {
         let remaining_m = remaining_m(navigator);
         let action = match step {
             _ if self.observer.gives_up() => Action::GiveUp,
-            Step::Arrived => Action::Arrived,
+            Step::Arrived => {
+                self.arrived_s.get_or_insert(t_s);
+                Action::Arrived
+            }
             Step::Idle => Action::Stop,
             // A recovery attempt is not the cause of the blockage.
             Step::Drive(command) | Step::Blocked { command, why: Blocked::Recovering(_) } => {
                 Action::Drive(command)
             }
             Step::Blocked { command, why } => {
-                self.blocked = Some((t_s, why));
+                (self.blocked, self.arrived_s) = (Some((t_s, why)), None);
                 Action::Drive(command)
             }
         };
@@ -375,13 +381,39 @@ impl Driver<'_> {
                 "the remaining path did not become {stuck_progress_m} m shorter within {stuck_window_s} s"
             ),
         };
+        let is_contact = matches!(run.outcome, Outcome::Collided { .. });
+        if let Some(arrived) = self.arrived(run).filter(|_| !is_contact) {
+            return Some(what + &arrived);
+        }
         // A contact has nothing to do with a problem long before.
         let end_s = self.cycles as f64 * self.task.robot.robot.cycle_s;
-        let is_contact = matches!(run.outcome, Outcome::Collided { .. });
         let is_of_now = |t_s: f64| !is_contact || end_s - t_s <= BEFORE_CONTACT_S;
         let last = self.blocked.as_ref().filter(|&&(t_s, _)| is_of_now(t_s));
         let last = last.map(|(_, why)| format!("; the last problem: {why}"));
         Some(what + &last.unwrap_or_default())
+    }
+}
+
+impl Driver<'_> {
+    /// The error of a robot that reported its arrival, but was not near enough to its goal.
+    fn arrived(&self, run: &Run) -> Option<String> {
+        let arrived_s = self.arrived_s?;
+        let then = run.samples.iter().find(|sample| sample.t_s >= arrived_s)?;
+        let off_m = then.pose.point().distance(self.task.robot.goal.position);
+        let [own_m, allowed_m] =
+            [self.task.robot.stack.controller.goal_tolerance_m, self.rules.goal_tolerance_m];
+        if off_m > own_m {
+            Some(format!(
+                "; at {arrived_s:.1} s the robot believed it was at its goal, but it was {off_m:.2} m away from it: its \
+                 localisation was wrong"
+            ))
+        } else if off_m > allowed_m {
+            Some(format!(
+                "; at {arrived_s:.1} s the robot arrived within its own tolerance of {own_m} m; the scene allows {allowed_m} m"
+            ))
+        } else {
+            None
+        }
     }
 }
 

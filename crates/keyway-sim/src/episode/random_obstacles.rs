@@ -77,6 +77,9 @@ pub struct RandomMoving {
     pub radius_m: [f64; 2],
     /// Lowest and highest speed \[m/s\].
     pub speed_mps: [f64; 2],
+    /// True if they give way to robots and to each other.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub gives_way: bool,
 }
 
 fn usual_near_way_m() -> f64 {
@@ -111,7 +114,7 @@ impl RandomObstacles {
             unless_few("unknown.count", count)?;
             ConfigError::unless_range("unknown.radius_m", radius_m)?;
         }
-        if let Some(RandomMoving { count, radius_m, speed_mps }) = self.moving {
+        if let Some(RandomMoving { count, radius_m, speed_mps, .. }) = self.moving {
             unless_few("moving.count", count)?;
             ConfigError::unless_range("moving.radius_m", radius_m)?;
             ConfigError::unless_range("moving.speed_mps", speed_mps)?;
@@ -122,6 +125,12 @@ impl RandomObstacles {
         }
         ConfigError::unless_not_negative("near_way_m", self.near_way_m)?;
         ConfigError::unless_not_negative("free_ends_m", self.free_ends_m)
+    }
+
+    /// True if another seed gives other obstacles.
+    pub fn is_random(&self) -> bool {
+        self.unknown.is_some_and(|kind| kind.count > 0)
+            || self.moving.is_some_and(|kind| kind.count > 0)
     }
 
     /// Adds the obstacles of a seed to the world of an episode, and records their number there.
@@ -285,7 +294,11 @@ impl Ground {
         }
         // A closed walk along a line: to one end, back past its start to the other end, and back.
         let motion = WayPoints::around(vec![at, to, fro], speed_mps).ok()?;
-        MovingObstacle::new(radius_m, ObstacleMotion::WayPoints(motion)).ok()
+        let motion =
+            if kind.gives_way { ObstacleMotion::GivesWay } else { ObstacleMotion::WayPoints }(
+                motion,
+            );
+        MovingObstacle::new(radius_m, motion).ok()
     }
 
     /// Farthest position from `at` in a direction that a disc reaches without contact; `None` if it

@@ -309,7 +309,8 @@ impl SceneFile {
         let is_glimpsed = |it: &UnknownObstacle| !matches!(it.presence.seen, 0.0 | 1.0);
         let glimpses = self.unknown.iter().any(is_glimpsed);
         let disturbed = !self.disturbances.is_none();
-        is_generated || takes_seed || self.random.is_some() || disturbed || glimpses
+        let is_drawn = self.random.as_ref().is_some_and(RandomObstacles::is_random);
+        is_generated || takes_seed || is_drawn || disturbed || glimpses
     }
 
     /// Returns the map that is generated from the seed, with free space around start, way-points

@@ -71,8 +71,8 @@ impl Run {
     }
 }
 
-/// Recorded path of an obstacle that gives way ([`ObstacleMotion::GivesWay`](super::ObstacleMotion::GivesWay))
-/// during a run.
+/// Recorded path of an obstacle that gives way during a run
+/// ([`ObstacleMotion::GivesWay`](super::ObstacleMotion::GivesWay)).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MoverWay {
     /// Index in [`World::movers`](super::World::movers).

@@ -8,8 +8,8 @@ use crate::args::{BatchArgs, BatchCli, BatchCommand, Format, Keep, MergeArgs};
 use crate::error::{CliError, Kind};
 use crate::progress::RunBar;
 use keyway_lab::batch::{
-    self, BatchReport, BatchRequest, MergeRequest, against_first_table, cycles_line, summary_table,
-    wins_table,
+    self, BatchReport, BatchRequest, MergeRequest, against_first_table, cycles_line, scenes_table,
+    summary_table, wins_table,
 };
 pub use plots::BatchPlots;
 
@@ -63,7 +63,8 @@ fn show(report: &BatchReport, format: Format) -> Result<(), CliError> {
     if let Some(text) = against_first_table(&report.against_first) {
         print(&format!("\n{text}"))?;
     }
-    let more = [wins_table(&report.wins), cycles_line(&report.cycles)];
+    let by_scene = scenes_table(&report.scenes);
+    let more = [by_scene, wins_table(&report.wins), cycles_line(&report.cycles)];
     for text in more.into_iter().flatten() {
         print(&format!("\n{text}"))?;
     }

@@ -8,6 +8,7 @@ use keyway_lab::batch::{PictureFile, Pictures, Record, Row};
 use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::{Confidence, Rate, Sample};
 use keyway_sim::report::Inputs;
+use std::collections::HashSet;
 use std::error::Error;
 use std::fmt::Write as _;
 
@@ -94,6 +95,9 @@ struct Runs<'a> {
 const BOXES: &str = "Box: quartiles; bar: median; cross: mean; whiskers: farthest values within 1.5 box lengths; rings: values beyond.";
 
 impl Runs<'_> {
+    /// Number of different scenes from which a trend over clutter is shown.
+    const FEWEST_SCENES: usize = 10;
+
     fn times(&self) -> Option<Captioned> {
         let what = "Time to the goal, of the runs that reached it.";
         self.boxes("time [s]", what, |run| run.time_s)
@@ -121,8 +125,14 @@ impl Runs<'_> {
         Some((box_plot(&BoxPlot { title: "", label, groups: &groups, caption: "" }), caption))
     }
 
-    /// Plot of success rates; `None` if all worlds are about equally cluttered.
+    /// Plot of success rates; `None` if all worlds are about equally cluttered, or if they are few:
+    /// then a trend over clutter shows how these scenes differ.
     fn success(&self) -> Option<Captioned> {
+        let runs = self.by_stack.iter().flatten();
+        let scenes: HashSet<&str> = runs.map(|run| run.scene.as_str()).collect();
+        if (2..Self::FEWEST_SCENES).contains(&scenes.len()) {
+            return None;
+        }
         let shares = self.by_stack.iter().flatten().filter_map(|run| run.occupied_share);
         let per_stack = self.count / self.names.len().max(1);
         let groups = Groups::of(shares.collect(), per_stack)?;
@@ -136,7 +146,8 @@ impl Runs<'_> {
             groups.sizes(&self.by_stack)
         );
         let labels = ("clutter [% of the map]", "reached [%]");
-        Some(self.panels(&points, labels, (Some((0.0, 100.0)), true), &what))
+        // Several scenes may share a map, and its clutter stands for the map: no line joins them.
+        Some(self.panels(&points, labels, (Some((0.0, 100.0)), scenes.len() == 1), &what))
     }
 
     fn lengths_and_times(&self) -> Option<Captioned> {

@@ -34,6 +34,7 @@ pub(crate) fn run(command: &SceneCommand) -> Result<Done, CliError> {
                 robot: args.robot.clone(),
                 unknown: args.unknown,
                 moving: args.moving,
+                gives_way: args.gives_way,
                 folder: args.out.clone(),
             };
             write(&args.out, &request.scenes()?, args.format)

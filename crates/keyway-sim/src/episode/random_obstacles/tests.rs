@@ -22,7 +22,12 @@ fn episode(with_door: bool, robot: Robot) -> Episode {
 fn config(unknown: u32, moving: u32) -> RandomObstacles {
     RandomObstacles {
         unknown: Some(RandomUnknown { count: unknown, radius_m: [0.1, 0.4] }),
-        moving: Some(RandomMoving { count: moving, radius_m: [0.2, 0.3], speed_mps: [0.3, 1.0] }),
+        moving: Some(RandomMoving {
+            count: moving,
+            radius_m: [0.2, 0.3],
+            speed_mps: [0.3, 1.0],
+            gives_way: false,
+        }),
         near_way_m: 0.4,
         free_ends_m: 0.6,
     }
@@ -168,6 +173,33 @@ fn what_moves_crosses_the_way_and_touches_nothing() {
 }
 
 #[test]
+fn obstacles_that_give_way_are_the_same_ones() {
+    let drawn = |gives_way| {
+        let moving = config(0, 2).moving.map(|moving| RandomMoving { gives_way, ..moving });
+        drawn(&RandomObstacles { moving, ..config(1, 0) }, false, Robot::small(), 5)
+    };
+    let (stubborn, polite) = (drawn(false), drawn(true));
+    assert_eq!(stubborn.obstacles, polite.obstacles);
+    assert_eq!(polite.movers.len(), 2);
+    for (one, other) in stubborn.movers.iter().zip(&polite.movers) {
+        assert_eq!(one.at(0.0), other.at(0.0));
+        let (ObstacleMotion::WayPoints(one), ObstacleMotion::GivesWay(other)) =
+            (one.motion(), other.motion())
+        else {
+            panic!("{one:?} {other:?}")
+        };
+        assert_eq!(one, other);
+    }
+}
+
+#[test]
+fn without_a_number_nothing_is_random() {
+    assert!(config(1, 0).is_random() && config(0, 1).is_random());
+    assert!(!config(0, 0).is_random());
+    assert!(!RandomObstacles { unknown: None, moving: None, ..config(0, 0) }.is_random());
+}
+
+#[test]
 fn what_finds_no_place_is_counted() {
     // The door is 1.2 m wide, too narrow for a disc of 0.6 m and the robot, and the whole path is
     // within the door.
@@ -176,7 +208,12 @@ fn what_finds_no_place_is_counted() {
     episode.robots[0].goal.position = Point::new(7.05, 2.55);
     let wide = RandomObstacles {
         unknown: Some(RandomUnknown { count: 2, radius_m: [0.4, 0.4] }),
-        moving: Some(RandomMoving { count: 3, radius_m: [0.5, 0.5], speed_mps: [1.0, 1.0] }),
+        moving: Some(RandomMoving {
+            count: 3,
+            radius_m: [0.5, 0.5],
+            speed_mps: [1.0, 1.0],
+            gives_way: false,
+        }),
         near_way_m: 0.1,
         free_ends_m: 0.1,
     };
@@ -214,7 +251,9 @@ fn bad_values_are_named() {
     let unknown = |count, radius_m| Some(RandomUnknown { count, radius_m });
     assert_eq!(field(&|it| it.unknown = unknown(1001, [0.1, 0.2])), "unknown.count");
     assert_eq!(field(&|it| it.unknown = unknown(1, [0.3, 0.2])), "unknown.radius_m[1]");
-    let moving = |speed_mps| Some(RandomMoving { count: 1, radius_m: [0.1, 0.2], speed_mps });
+    let moving = |speed_mps| {
+        Some(RandomMoving { count: 1, radius_m: [0.1, 0.2], speed_mps, gives_way: false })
+    };
     assert_eq!(field(&|it| it.moving = moving([0.0, 1.0])), "moving.speed_mps[0]");
     assert_eq!(field(&|it| it.moving = moving([1.0, 200.0])), "moving.speed_mps[1]");
 }
