@@ -94,6 +94,30 @@ impl CliError {
         Some(Self::new(Kind::Usage, message).field(option))
     }
 
+    /// Returns the error for an option of other commands that batches and their scenes do not
+    /// have; `None` for any other fault.
+    pub(crate) fn of_batch(error: &clap::Error, argv: &[OsString]) -> Option<Self> {
+        let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidArg) else {
+            return None;
+        };
+        let instead = match found.as_str() {
+            "--as-published" => {
+                "a batch drives every method with the values for the robot of its scene. `keyway navigate --as-published` drives \
+                 one as published, on maps with cells of 1 m, and `keyway reproduce` measures the claims of the papers"
+            }
+            "--radius" => {
+                "the robot of a batch comes from its scenes or from --robot: a file with the lines `like = \"small\"` and \
+                 `radius_m = 0.22` is a robot of that radius"
+            }
+            _ => return None,
+        };
+        let command = argv.get(1).and_then(|command| command.to_str())?;
+        let is_batch = command == "batch" || (command == "scene" && found == "--radius");
+        let is_unknown = error.kind() == ErrorKind::UnknownArgument;
+        let message = || format!("keyway {command} has no {found}: {instead}");
+        (is_batch && is_unknown).then(|| Self::new(Kind::Usage, message()).field(found))
+    }
+
     /// Parses the error report of another process of this program.
     pub(crate) fn from_report(report: &serde_json::Value) -> Result<Self, serde_json::Error> {
         let ErrorReport { kind, message, field, .. } = ErrorReport::deserialize(report)?;

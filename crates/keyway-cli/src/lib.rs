@@ -81,7 +81,9 @@ fn refuse(error: &clap::Error, argv: &[OsString]) -> u8 {
             }
         };
     }
-    if let Some(error) = CliError::of_split_numbers(error, argv) {
+    let explained =
+        CliError::of_split_numbers(error, argv).or_else(|| CliError::of_batch(error, argv));
+    if let Some(error) = explained {
         error.print(json);
     } else if json {
         CliError::from_clap(error).print(true);

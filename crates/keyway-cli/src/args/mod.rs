@@ -90,7 +90,7 @@ pub(crate) enum Command {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
-    /// Converts pictures from SVG to PDF, for LaTeX; only in builds with the feature `pdf`
+    /// Converts pictures from SVG to PDF, for LaTeX
     #[cfg(feature = "pdf")]
     Pdf(PdfArgs),
     /// Writes manual pages of all commands
@@ -407,7 +407,8 @@ pub(crate) struct CompareArgs {
     pub(crate) config: ConfigArgs,
     /// Columns of the table in the terminal and in LaTeX, in the given order, after the names:
     /// corners, solved, missed, compared, length, excess, worst, turns, angle, non-smooth,
-    /// clearance, shortfalls, expanded, generated, plan, smooth [default: those that fit a page]
+    /// clearance, shortfalls, expanded, generated, plan, smooth [default: all but corners, missed,
+    /// compared, worst, angle, expanded, generated]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) columns: Vec<String>,
     /// Omit all times; the output is then deterministic

@@ -11,13 +11,14 @@ below a mean: 5th to 95th percentile of the queries):
   turns       points at which the heading changes; on a curve, each stretch that bends to one side
   non-smooth  heading jumps: each turn of a polyline; on a curve, changes of more than 5 degrees within 1 cm
   clearance   smallest distance from a path to an obstacle
-  shortfalls  paths with less clearance than requested (omitted if there are none)
+  shortfalls  paths with less clearance than requested (omitted if there are none): lines of theta-star and
+              lazy-theta-star keep up to half a cell's diagonal less, and smoothers then keep as much as they do
   plan        median time of a query
   smooth      median time to smooth its path; empty for the smoother `none`, which leaves the path unchanged
 Each row against the first one, on the same queries:
   equal       queries on which both paths have the same length
-  difference  length difference to the first row: median and 95 % confidence interval
-  effect      rank-biserial correlation, from -1 (the path is always shorter) to 1 (always longer)
+  difference  length difference to the first row: Hodges-Lehmann median and 95 % confidence interval
+  effect      rank-biserial correlation, from -1 (every path that differs is shorter) to 1 (longer)
   p           probability of such differences by chance: of lengths by Wilcoxon's signed-rank test, of solved
               queries by McNemar's exact test, both corrected for the number of rows by Holm's method
 CSV and JSON have more columns: `--out DIR`, `--format json`; `--columns` selects those of LaTeX.";

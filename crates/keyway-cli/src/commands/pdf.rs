@@ -10,6 +10,13 @@ use keyway_draw::Svg;
 pub(crate) fn run(args: &PdfArgs) -> Result<Done, CliError> {
     let mut files = Vec::new();
     for path in &args.pictures {
+        // No file is written if one of them is none.
+        if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("svg")) {
+            let message = format!("{}: give the SVG file of the picture", path.display());
+            return Err(CliError::new(Kind::Usage, message).field("<FILE.svg>"));
+        }
+    }
+    for path in &args.pictures {
         let blamed = |kind, error: &dyn std::fmt::Display| {
             CliError::new(kind, format!("{}: {error}", path.display())).field("<FILE.svg>")
         };

@@ -4,7 +4,7 @@ use crate::support::keyway;
 use std::path::Path;
 
 /// All commands; the test below finds out when one is missing.
-pub(crate) const COMMANDS: [&str; 26] = [
+pub(crate) const COMMANDS: [&str; 27] = [
     "",
     "demo",
     "plan",
@@ -29,6 +29,7 @@ pub(crate) const COMMANDS: [&str; 26] = [
     "replay",
     "reproduce",
     "list",
+    "pdf",
     "man",
     "completions",
 ];

@@ -48,6 +48,19 @@ fn what_a_scene_says_is_changed_in_its_file() {
 }
 
 #[test]
+fn options_that_a_batch_does_not_have_are_explained() {
+    let folder = folder();
+    let batch = "batch small_house.toml --out batch";
+    let parts = ["keyway batch has no --as-published", "keyway navigate --as-published"];
+    refused(&folder, &format!("{batch} --as-published"), &parts, "--as-published");
+    let parts = ["keyway batch has no --radius", "`radius_m = 0.22`"];
+    refused(&folder, &format!("{batch} --radius 0.22"), &parts, "--radius");
+    refused(&folder, "scene pairs pairs.csv --radius 0.22 --out x", &parts[1..], "--radius");
+    // Other unknown options keep the parser's own message.
+    refused(&folder, &format!("{batch} --stakcs keyway"), &["unexpected argument"], "--stakcs");
+}
+
+#[test]
 fn numbers_that_are_separated_by_spaces_are_joined() {
     let folder = folder();
     for (options, meant) in [
