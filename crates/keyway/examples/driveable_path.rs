@@ -52,7 +52,7 @@ fn smooth_path(
     let done = smoother.smooth(&line, &map.clearance(), clearance_m);
     println!("planned at {clearance_m:.3} m: {:.3} m after smoothing", done.path.length_m());
     println!("  sharp corners, at which the robot turns on the spot: {}", done.sharp_corners.len());
-    if let Some(kept_m) = done.shortfall_m {
+    if let Some(kept_m) = done.kept_clearance_m {
         println!("  but it keeps only {kept_m:.3} m somewhere");
     }
     Ok(done.path)
