@@ -10,7 +10,7 @@ use keyway_draw::Svg;
 pub(crate) fn run(args: &PdfArgs) -> Result<Done, CliError> {
     let mut files = Vec::new();
     for path in &args.pictures {
-        // No file is written if one of them is none.
+        // Checked beforehand, so that a wrong name leaves no files.
         if path.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("svg")) {
             let message = format!("{}: give the SVG file of the picture", path.display());
             return Err(CliError::new(Kind::Usage, message).field("<FILE.svg>"));

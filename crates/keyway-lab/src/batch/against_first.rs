@@ -6,7 +6,6 @@ use super::row::Row;
 use crate::significance::{Differences, holm_of, p_value};
 use crate::table::{comment, latex_table};
 use crate::table::{number, rows, with_range};
-use keyway_sim::episode::EpisodeOutcome;
 use keyway_sim::metrics::statistics::McNemarTest;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -57,11 +56,10 @@ fn compared<'a>(runs: &[&'a Row], first: &str, other: &str) -> AgainstFirst {
     let with_first = |run: &'a Row| Some((run, *firsts.get(&(run.scene.as_str(), run.seed))?));
     let pairs: Vec<(&Row, &Row)> = of(other).into_iter().filter_map(with_first).collect();
     let runs = pairs.len();
-    let has_reached = |run: &Row| run.outcome == EpisodeOutcome::Reached;
     let reached = McNemarTest::of_pairs(
-        pairs.iter().map(|(this, first)| [this, first].map(|run| has_reached(run))),
+        pairs.iter().map(|(this, first)| [this, first].map(|run| run.has_reached())),
     );
-    let both = pairs.iter().filter(|(this, first)| has_reached(this) && has_reached(first));
+    let both = pairs.iter().filter(|(this, first)| this.has_reached() && first.has_reached());
     let differences = both.filter_map(|(this, first)| Some(this.time_s? - first.time_s?));
     let differences = Differences::of(differences, SAME_S);
     let [ci_low_time_difference_s, ci_high_time_difference_s] = differences.median_ends();

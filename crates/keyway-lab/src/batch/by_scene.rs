@@ -3,6 +3,7 @@
 use super::independent::independent;
 use super::record::Record;
 use super::row::{ContactWhile, Row};
+use super::summary::{ended, of_reached, touched};
 use crate::measure::mean;
 use crate::table::rows;
 use keyway_sim::episode::EpisodeOutcome;
@@ -36,14 +37,9 @@ impl SceneSummary {
     /// Summary of the runs of a stack in a scene, with the interval of those that are
     /// `independent`.
     fn of(runs: &[&Row], independent: &[&Row]) -> Self {
-        let count = |is: &dyn Fn(&Row) -> bool| runs.iter().filter(|run| is(run)).count();
-        let of = |outcome: EpisodeOutcome| count(&|run| run.outcome == outcome);
-        let touched = |while_: ContactWhile| count(&|run| run.contact == Some(while_));
-        let rate = Rate::of(independent.iter().map(|run| has_reached(run)));
+        let of = |outcome| ended(runs, outcome);
+        let rate = Rate::of(independent.iter().map(|run| run.has_reached()));
         let rate = rate.interval(Confidence::USUAL);
-        let of_reached = |get: fn(&Row) -> Option<f64>| -> Vec<f64> {
-            runs.iter().filter(|run| has_reached(run)).filter_map(|run| get(run)).collect()
-        };
         Self {
             scene: runs[0].scene.clone(),
             stack: runs[0].stack.clone(),
@@ -51,19 +47,15 @@ impl SceneSummary {
             reached: of(EpisodeOutcome::Reached),
             ci_low_reached: rate.map(|ends| ends.low),
             ci_high_reached: rate.map(|ends| ends.high),
-            contacts_driving: touched(ContactWhile::Driving),
-            contacts_standing: touched(ContactWhile::Standing),
+            contacts_driving: touched(runs, ContactWhile::Driving),
+            contacts_standing: touched(runs, ContactWhile::Standing),
             stuck: of(EpisodeOutcome::Stuck),
             timeout: of(EpisodeOutcome::Timeout),
             no_path: of(EpisodeOutcome::NoPath),
-            mean_time_s: mean(&of_reached(|run| run.time_s)),
-            mean_clearance_m: mean(&of_reached(|run| run.min_clearance_m)),
+            mean_time_s: mean(&of_reached(runs, |run| run.time_s)),
+            mean_clearance_m: mean(&of_reached(runs, |run| run.min_clearance_m)),
         }
     }
-}
-
-fn has_reached(run: &Row) -> bool {
-    run.outcome == EpisodeOutcome::Reached
 }
 
 /// Summaries of all stacks in each scene, in the order of the first runs.

@@ -117,6 +117,11 @@ pub(super) struct World {
 }
 
 impl Row {
+    /// True if all robots reached their goals.
+    pub(super) fn has_reached(&self) -> bool {
+        self.outcome == EpisodeOutcome::Reached
+    }
+
     /// Returns the row of one robot.
     pub(super) fn of(id: RunId<'_>, report: &RobotReport, world: &World) -> Self {
         let outcome = report.outcome;

@@ -71,16 +71,13 @@ pub fn summaries(records: &[Record]) -> Vec<StackSummary> {
 /// Summary of the runs of a stack: counts of all, shares and means of those that are
 /// `independent`.
 fn summary(stack: &str, runs: &[&Row], independent: &[&Row]) -> StackSummary {
-    let count = |is: &dyn Fn(&Row) -> bool| runs.iter().filter(|run| is(run)).count();
-    let of = |outcome: EpisodeOutcome| count(&|run| run.outcome == outcome);
-    let touched = |while_: ContactWhile| count(&|run| run.contact == Some(while_));
+    let of = |outcome| ended(runs, outcome);
+    let touched = |while_| touched(runs, while_);
     let reached = |get| of_reached(independent, get);
     let clearances = reached(|run| run.min_clearance_m);
     let time = Sample::new(reached(|run| run.time_s)).ok();
     let score = Sample::new(independent.iter().filter_map(|run| run.score).collect()).ok();
-    let has_reached = |run: &&&Row| run.outcome == EpisodeOutcome::Reached;
-    let independent_reached = independent.iter().filter(has_reached).count();
-    let rate = Rate::of(independent.iter().map(|run| has_reached(&run)));
+    let rate = Rate::of(independent.iter().map(|run| run.has_reached()));
     let rate = rate.interval(Confidence::USUAL);
     let time_ends = time.as_ref().and_then(mean_interval);
     let score_ends = score.as_ref().and_then(mean_interval);
@@ -89,7 +86,7 @@ fn summary(stack: &str, runs: &[&Row], independent: &[&Row]) -> StackSummary {
         runs: runs.len(),
         reached: of(EpisodeOutcome::Reached),
         independent_runs: independent.len(),
-        independent_reached,
+        independent_reached: ended(independent, EpisodeOutcome::Reached),
         ci_low_reached: rate.map(|ends| ends.low),
         ci_high_reached: rate.map(|ends| ends.high),
         robots: runs.iter().map(|run| run.robots).sum(),
@@ -119,10 +116,19 @@ fn summary(stack: &str, runs: &[&Row], independent: &[&Row]) -> StackSummary {
     }
 }
 
+/// Number of runs with an outcome.
+pub(super) fn ended(runs: &[&Row], outcome: EpisodeOutcome) -> usize {
+    runs.iter().filter(|run| run.outcome == outcome).count()
+}
+
+/// Number of runs that ended in a contact in this state of motion.
+pub(super) fn touched(runs: &[&Row], while_: ContactWhile) -> usize {
+    runs.iter().filter(|run| run.contact == Some(while_)).count()
+}
+
 /// Values of the runs that reached the goal.
-fn of_reached(runs: &[&Row], get: fn(&Row) -> Option<f64>) -> Vec<f64> {
-    let reached = runs.iter().filter(|run| run.outcome == EpisodeOutcome::Reached);
-    reached.filter_map(|run| get(run)).collect()
+pub(super) fn of_reached(runs: &[&Row], get: fn(&Row) -> Option<f64>) -> Vec<f64> {
+    runs.iter().filter(|run| run.has_reached()).filter_map(|run| get(run)).collect()
 }
 
 /// Interval of the mean with a fixed seed, so that the same runs give the same bytes.

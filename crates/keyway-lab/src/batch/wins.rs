@@ -2,7 +2,6 @@
 
 use super::record::Record;
 use super::row::Row;
-use keyway_sim::episode::EpisodeOutcome;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -129,7 +128,7 @@ impl RunMeasure {
 
     /// Returns the value of a run; `None` if it has none.
     pub(super) fn of(self, run: &Row) -> Option<f64> {
-        let has_reached = run.outcome == EpisodeOutcome::Reached;
+        let has_reached = run.has_reached();
         let value = match self {
             Self::Reached => return Some(f64::from(u8::from(has_reached))),
             Self::TimeS => run.time_s,
@@ -238,6 +237,7 @@ pub(super) mod tests {
     use super::*;
     use crate::batch::RunTimes;
     use crate::batch::row::tests::reached;
+    use keyway_sim::episode::EpisodeOutcome;
 
     /// A run of a stack with this time, or one that did not reach its goal.
     pub(in crate::batch) fn record(scene: &str, stack: &str, time_s: Option<f64>) -> Record {

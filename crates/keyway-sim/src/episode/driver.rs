@@ -392,9 +392,7 @@ impl Driver<'_> {
         let last = last.map(|(_, why)| format!("; the last problem: {why}"));
         Some(what + &last.unwrap_or_default())
     }
-}
 
-impl Driver<'_> {
     /// The error of a robot that reported its arrival, but was not near enough to its goal.
     fn arrived(&self, run: &Run) -> Option<String> {
         let arrived_s = self.arrived_s?;

@@ -51,7 +51,7 @@ pub enum Doubt {
     /// A scan within the last 2 s had bitwise the same ranges as the one before, while the robot
     /// drove or turned by more than 2 cm or 1 degree. It does not count as a new scan, unless
     /// nearly all of its hits are at obstacles that are already known or sensed.
-    /// Until another scan arrives, repetitions do not count either while the robot is stationary.
+    /// Once the sensor is silent, repetitions do not count while the robot is stationary, either.
     ScanRepeated {
         /// Index of the sensor.
         sensor: usize,

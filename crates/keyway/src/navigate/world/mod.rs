@@ -94,7 +94,7 @@ struct SensorTimes {
     scanned: Option<Time>,
     /// Last scan with a valid beam.
     said: Option<Time>,
-    /// True if the last scan was refused as a repetition.
+    /// True if the sensor is silent because it repeats itself.
     #[serde(default)]
     repeats: bool,
 }
