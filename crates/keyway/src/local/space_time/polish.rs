@@ -123,6 +123,8 @@ fn polish_at(
     for (v, omega) in [(0.0, omega), (v, 0.0)] {
         let old = rest[0];
         let mut best = old;
+        // Of two equal sides, the first one is taken: outwards, which a mirror does not change.
+        let omega = omega.copysign(old.omega);
         for (v, omega) in [(v, omega), (-v, -omega)] {
             let wanted = Velocity::new((old.v + v).max(lowest_mps), old.omega + omega);
             rest[0] = limits.reached(begun.state.velocity, wanted, stretch_s);

@@ -160,7 +160,7 @@ impl Beam {
             let (state, cost) = judge.leads_to(&from, &so_far, to);
             let left_s = judge.time_to_go_s(&state);
             self.open.push(Proposal {
-                total_s: state.after_s + cost.sum_s() + left_s,
+                total_s: rounded_s(state.after_s + cost.sum_s() + left_s),
                 number: self.open.len() as u32,
                 parent: parent as u32,
                 is_driven: false,
@@ -222,7 +222,7 @@ impl Beam {
         let leads_elsewhere = state.at.distance(start) > extent.elsewhere_m;
         tally.driving += u32::from(leads_elsewhere);
         tally.meets |= leads_elsewhere && cost.movers_s > Self::MEETING_S;
-        let total_s = state.after_s + cost.sum_s() + proposal.left_s;
+        let total_s = rounded_s(state.after_s + cost.sum_s() + proposal.left_s);
         self.open.push(Proposal { total_s, is_driven: true, leads_elsewhere, cost, ..proposal });
     }
 
@@ -250,6 +250,14 @@ impl Node {
         let cost = Cost { clearance_s: 0.0, movers_s: 0.0, steering_s: 0.0 };
         Self { state, cost, parent: 0, total_s: 0.0, arrives: false }
     }
+}
+
+/// A total in steps of 2⁻³⁰ s: rounding errors must not decide between two equal trajectories,
+/// which would be the other one in a mirrored world.
+fn rounded_s(total_s: f64) -> f64 {
+    // Neighbouring numbers of this size differ by that step.
+    const COARSE: f64 = 1.5 * (1_u64 << 22) as f64;
+    total_s + COARSE - COARSE
 }
 
 /// The bin of a state; states of one bin are nearly the same. Bins are relative to the start

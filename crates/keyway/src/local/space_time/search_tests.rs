@@ -29,7 +29,7 @@ fn search_all(
                 let drives = state.at.distance(start.at) > extent.elsewhere_m;
                 tally.driving += u32::from(drives);
                 tally.meets |= drives && cost.movers_s > Beam::MEETING_S;
-                let total_s = state.after_s + cost.sum_s() + left_s;
+                let total_s = rounded_s(state.after_s + cost.sum_s() + left_s);
                 let arrives = judge.arrives(&state, left_s);
                 let node = Node { state, cost, parent: parent as u32, total_s, arrives };
                 children.push((node, drives));

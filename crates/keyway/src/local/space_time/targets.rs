@@ -42,9 +42,12 @@ impl Targets {
         for speed_mps in [fastest, v.max(lowest_mps), slowest] {
             add(&mut targets.speeds_mps, speed_mps);
         }
+        // Of two equal trajectories the first one is taken: a mirror must not change which.
+        let sides = if bearing_rad < 0.0 { [right, left] } else { [left, right] };
         // A smaller angle is not worth a turn.
         let bearing_rad = if bearing_rad.abs() < Self::FACING_RAD { 0.0 } else { bearing_rad };
-        for rate_radps in [left, right, rate(0.0), rate(bearing_rad / stretch_s)] {
+        let [inner, outer] = sides;
+        for rate_radps in [inner, outer, rate(0.0), rate(bearing_rad / stretch_s)] {
             add(&mut targets.rates_radps, rate_radps);
         }
         if let Some(rate_radps) = judge.to_middle_radps(state) {
@@ -57,12 +60,13 @@ impl Targets {
                 add(&mut targets.speeds_mps, v + gently);
                 if judge.short_of_turning(state.at) > 0.0 {
                     for part in Self::WIDELY {
-                        add(&mut targets.rates_radps, omega + part * (left - omega));
-                        add(&mut targets.rates_radps, omega + part * (right - omega));
+                        for side in sides {
+                            add(&mut targets.rates_radps, omega + part * (side - omega));
+                        }
                     }
                 }
             }
-            for rate_radps in [omega, 0.5 * (omega + left), 0.5 * (omega + right)] {
+            for rate_radps in [omega, 0.5 * (omega + inner), 0.5 * (omega + outer)] {
                 add(&mut targets.rates_radps, rate_radps);
             }
         }
