@@ -25,34 +25,20 @@ pub(crate) struct DiagonalEvents {
     share: f64,
 }
 
-/// Bits of the map row by row, padding included.
-struct Plane {
-    words: Vec<u64>,
-    words_per_row: usize,
-}
-
 impl DiagonalEvents {
-    pub(in crate::map) fn new(
-        blocked: &BitGrid,
-        transposed: &BitGrid,
-        stops: &StopBitmaps,
-    ) -> Self {
-        let east = jumps_upwards(&stops.east, blocked);
-        let west = jumps_downwards(&stops.west, blocked);
-        let north = jumps_upwards(&stops.north, transposed).transposed();
-        let south = jumps_downwards(&stops.south, transposed).transposed();
-        let planes = [(&west, &south), (&west, &north), (&east, &south), (&east, &north)];
-        let free = u64::from(blocked.width()) * u64::from(blocked.height()) - blocked.count_ones();
-        let mut events = 0;
-        let mut directions = [const { Vec::new() }; 4];
-        for (direction, (row, column)) in planes.into_iter().enumerate() {
-            let (to_east, to_north) = (direction & 2 != 0, direction & 1 != 0);
-            let plane = Plane::of(row, column, &stops.cramped, (to_east, to_north));
-            events += plane.count_outside(blocked);
-            directions[direction] = plane.sheared(to_east == to_north);
-        }
-        let share = events as f64 / (4 * free).max(1) as f64;
+    pub(in crate::map) fn new(blocked: &BitGrid, stops: &StopBitmaps) -> Self {
+        let along_rows = [jumps_to_west(&stops.west, blocked), jumps_to_east(&stops.east, blocked)];
         let rows = blocked.height() as usize + 2;
+        let mut counts = Counts::default();
+        let mut directions = [const { Vec::new() }; 4];
+        for to_north in [false, true] {
+            let both = strips(blocked, stops, (&along_rows, to_north), &mut counts);
+            for (to_east, strips) in [false, true].into_iter().zip(both) {
+                let words = sheared(strips, rows, to_east == to_north);
+                directions[2 * usize::from(to_east) + usize::from(to_north)] = words;
+            }
+        }
+        let share = counts.events as f64 / counts.free.max(1) as f64;
         Self { directions, rows, stride: blocked.stride(), share }
     }
 
@@ -83,73 +69,105 @@ impl DiagonalEvents {
     }
 }
 
-impl Plane {
-    /// Events of a direction, from the jump points along rows and columns.
-    fn of(
-        row_jumps: &BitGrid,
-        column_jumps: &BitGrid,
-        cramped: &BitGrid,
-        (to_east, to_north): (bool, bool),
-    ) -> Self {
-        let words_per_row = cramped.row(0).len();
-        let height = cramped.height() as i32;
-        let mut words = Vec::with_capacity(words_per_row * (height as usize + 2));
-        for y in -1..=height {
-            // Row of the 2 x 2 cells that a step needs, which are indexed by their south-western
-            // one.
-            let block = if to_north { y } else { y - 1 };
-            if block < -1 {
-                words.extend((0..words_per_row).map(|_| u64::MAX));
-                continue;
-            }
-            let (block, row, column) = (cramped.row(block), row_jumps.row(y), column_jumps.row(y));
-            for word in 0..words_per_row {
-                let narrow = if to_east {
-                    block[word]
-                } else {
-                    block[word] << 1 | if word == 0 { 1 } else { block[word - 1] >> 63 }
-                };
-                words.push(narrow | row[word] | column[word]);
+/// Free cells and events, both summed over the directions, of every seventh row: an odd number, as
+/// maps are often regular.
+#[derive(Debug, Default)]
+struct Counts {
+    events: u64,
+    free: u64,
+}
+
+impl Counts {
+    const EVERY: i32 = 7;
+
+    fn add(&mut self, events: u64, blocked: u64) {
+        self.events += u64::from((events & !blocked).count_ones());
+        self.free += u64::from((!blocked).count_ones());
+    }
+}
+
+/// Events of the two directions to the north, or of those to the south: first the one to the west.
+/// Each in strips of 64 columns, padding included, the words of a strip from row to row.
+///
+/// Rows come in the order in which a scan along a column meets them last to first: a scan from a
+/// cell ends at a jump point if the next cell is one, or the scan from there does.
+fn strips(
+    blocked: &BitGrid,
+    stops: &StopBitmaps,
+    (along_rows, to_north): (&[Vec<u64>; 2], bool),
+    counts: &mut Counts,
+) -> [Vec<u64>; 2] {
+    let (words_per_row, height) = (blocked.row(0).len(), blocked.height() as i32);
+    let rows = height as usize + 2;
+    let [mut west, mut east] = [(); 2].map(|()| vec![u64::MAX; words_per_row * rows]);
+    let mut along_column = vec![0; words_per_row];
+    for row in 0..height {
+        let (y, ahead) = if to_north { (height - 1 - row, height - row) } else { (row, row - 1) };
+        let (own, next) = (blocked.row(y), blocked.row(ahead));
+        // The 2 x 2 cells that a step needs are indexed by their south-western one.
+        let block = stops.cramped.row(y.min(ahead));
+        let [to_west, to_east] = along_rows
+            .each_ref()
+            .map(|words| &words[words_per_row * y as usize..][..words_per_row]);
+        for word in 0..words_per_row {
+            let opens = western(own, word) & !western(next, word)
+                | eastern(own, word) & !eastern(next, word);
+            let passes = !(opens | next[word]);
+            let along_column = &mut along_column[word];
+            *along_column = opens & !next[word] | passes & *along_column;
+            let at = word * rows + y as usize + 1;
+            west[at] = western(block, word) | to_west[word] | *along_column;
+            east[at] = block[word] | to_east[word] | *along_column;
+            if y % Counts::EVERY == 0 {
+                counts.add(west[at], own[word]);
+                counts.add(east[at], own[word]);
             }
         }
-        Self { words, words_per_row }
     }
+    [west, east]
+}
 
-    /// Number of set bits at cells that are not blocked.
-    fn count_outside(&self, blocked: &BitGrid) -> u64 {
-        let pairs = self.words.iter().zip(blocked.words());
-        pairs.map(|(own, blocked)| u64::from((own & !blocked).count_ones())).sum()
-    }
+/// For each cell, the bit of its western neighbour; that of the border is set.
+fn western(row: &[u64], word: usize) -> u64 {
+    row[word] << 1 | if word == 0 { 1 } else { row[word - 1] >> 63 }
+}
 
-    /// Events with diagonals as rows: those that rise to the east, or those that fall.
-    fn sheared(&self, rises: bool) -> Vec<u64> {
-        let rows = self.words.len() / self.words_per_row;
-        let mut sheared = vec![0; self.words.len()];
-        let (mut strip, mut next) = (vec![0; rows], vec![0; rows]);
-        for word in 0..self.words_per_row {
-            for (y, own) in strip.iter_mut().enumerate() {
-                *own = self.words[y * self.words_per_row + word];
-            }
-            // Column i of the strip moves by i rows, in powers of two.
-            for (power, moves) in COLUMNS.into_iter().enumerate() {
-                let by = (1 << power) % rows;
-                let by = if rises { by } else { (rows - by) % rows };
-                let (wraps, goes_on) = strip.split_at(by);
-                let (up, last) = next.split_at_mut(rows - by);
-                let (up_stays, last_stays) = strip.split_at(rows - by);
-                merge(up, up_stays, goes_on, moves);
-                merge(last, last_stays, wraps, moves);
-                std::mem::swap(&mut strip, &mut next);
-            }
-            let first = 64 * word % rows;
-            for row in 0..rows {
-                let (from, to) = if rises { (first, row) } else { (row, first) };
-                let from = if from >= to { from - to } else { from + rows - to };
-                sheared[row * self.words_per_row + word] = strip[from];
-            }
+/// For each cell, the bit of its eastern neighbour; that of the border is set.
+fn eastern(row: &[u64], word: usize) -> u64 {
+    row[word] >> 1 | row.get(word + 1).map_or(1, |next| next & 1) << 63
+}
+
+/// Strips with diagonals as rows: those that rise to the east, or those that fall. Row by row.
+fn sheared(mut strips: Vec<u64>, rows: usize, rises: bool) -> Vec<u64> {
+    let words_per_row = strips.len() / rows;
+    let (mut sheared, mut next) = (vec![0; strips.len()], vec![0; rows]);
+    for (word, strip) in strips.chunks_exact_mut(rows).enumerate() {
+        // Column i of the strip moves by i rows, in powers of two: an even number of times, so
+        // that the result is in the strip again.
+        for (power, moves) in COLUMNS.into_iter().enumerate() {
+            let by = (1 << power) % rows;
+            let by = if rises { by } else { (rows - by) % rows };
+            let (from, to) =
+                if power % 2 == 0 { (&*strip, &mut next[..]) } else { (&next[..], &mut *strip) };
+            let (wraps, goes_on) = from.split_at(by);
+            let (up, last) = to.split_at_mut(rows - by);
+            let (up_stays, last_stays) = from.split_at(rows - by);
+            merge(up, up_stays, goes_on, moves);
+            merge(last, last_stays, wraps, moves);
         }
-        sheared
+        let first = 64 * word % rows;
+        let to = sheared[word..].iter_mut().step_by(words_per_row);
+        if rises {
+            let (low, high) = strip.split_at(first + 1);
+            let from = low.iter().rev().chain(high.iter().rev());
+            to.zip(from).for_each(|(to, from)| *to = *from);
+        } else {
+            let (low, high) = strip.split_at(rows - first);
+            let from = high.iter().chain(low);
+            to.zip(from).for_each(|(to, from)| *to = *from);
+        }
     }
+    sheared
 }
 
 /// Combines two columns of words: bits in `moves` from `comes`, the others from `stays`.
@@ -169,42 +187,42 @@ const COLUMNS: [u64; 6] = [
     0xffff_ffff_0000_0000,
 ];
 
-/// Cells from which a scan towards higher bits ends at a jump point, not at a blocked cell.
-fn jumps_upwards(stops: &BitGrid, blocked: &BitGrid) -> BitGrid {
-    let mut jumps = blocked.clone();
-    for y in 0..stops.height() as i32 {
-        let (stops, blocked) = (stops.row(y), blocked.row(y));
+/// Cells from which a scan to the east ends at a jump point, not at a blocked cell. Row by row.
+fn jumps_to_east(stops: &BitGrid, blocked: &BitGrid) -> Vec<u64> {
+    let words_per_row = blocked.row(0).len();
+    let mut jumps = vec![0; words_per_row * stops.height() as usize];
+    for (y, jumps) in (0..).zip(jumps.chunks_exact_mut(words_per_row)) {
         // True if a scan from the last bit of a word meets a jump point.
         let mut beyond = 0;
-        for word in (0..stops.len()).rev() {
-            let jump = stops[word] & !blocked[word];
-            let (mut known, mut passes) = (jump >> 1 | beyond << 63, !stops[word] >> 1);
+        let row = jumps.iter_mut().zip(stops.row(y).iter().zip(blocked.row(y)));
+        for (known, (stops, blocked)) in row.rev() {
+            let jump = stops & !blocked;
+            let mut passes = !stops >> 1;
+            *known = jump >> 1 | beyond << 63;
             for by in [1, 2, 4, 8, 16, 32] {
-                known |= passes & known >> by;
+                *known |= passes & *known >> by;
                 passes &= passes >> by;
             }
-            jumps.set_word(y, word, known);
-            beyond = (jump | !stops[word] & known) & 1;
+            beyond = (jump | !stops & *known) & 1;
         }
     }
     jumps
 }
 
-/// Like [`jumps_upwards`], towards lower bits.
-fn jumps_downwards(stops: &BitGrid, blocked: &BitGrid) -> BitGrid {
-    let mut jumps = blocked.clone();
-    for y in 0..stops.height() as i32 {
-        let (stops, blocked) = (stops.row(y), blocked.row(y));
+/// Like [`jumps_to_east`], to the west.
+fn jumps_to_west(stops: &BitGrid, blocked: &BitGrid) -> Vec<u64> {
+    let words_per_row = blocked.row(0).len();
+    let mut jumps = vec![0; words_per_row * stops.height() as usize];
+    for (y, jumps) in (0..).zip(jumps.chunks_exact_mut(words_per_row)) {
         let mut beyond = 0;
-        for word in 0..stops.len() {
-            let jump = stops[word] & !blocked[word];
-            let (mut known, mut passes) = (jump << 1 | beyond, !stops[word] << 1);
-            for by in [1, 2, 4, 8, 16, 32] {
-                known |= passes & known << by;
-                passes &= passes << by;
-            }
-            jumps.set_word(y, word, known);
-            beyond = (jump | !stops[word] & known) >> 63;
+        let row = jumps.iter_mut().zip(stops.row(y).iter().zip(blocked.row(y)));
+        for (known, (stops, blocked)) in row {
+            let (jump, passes) = (stops & !blocked, !stops);
+            let after = jump << 1 | beyond;
+            // Adding the first bit of a run clears it and the rest of the run.
+            let runs = passes & !passes.wrapping_add(passes & after);
+            *known = after | runs << 1;
+            beyond = (jump | runs) >> 63;
         }
     }
     jumps
@@ -227,13 +245,12 @@ impl LazyDiagonals {
 
     /// Computing the events costs about as much as walking this many cells for each 64 of the
     /// map.
-    const CELLS_PER_WORD: u64 = 6;
+    const CELLS_PER_WORD: u64 = 4;
 
     /// The events, once they pay.
     pub(in crate::map) fn get(
         &self,
         blocked: &BitGrid,
-        transposed: &BitGrid,
         stops: &StopBitmaps,
     ) -> Option<&DiagonalEvents> {
         if let Some(known) = self.known.get() {
@@ -244,7 +261,7 @@ impl LazyDiagonals {
             return None;
         }
         let pays = |events: &DiagonalEvents| events.share <= Self::MOST;
-        let new = || Some(DiagonalEvents::new(blocked, transposed, stops)).filter(pays);
+        let new = || Some(DiagonalEvents::new(blocked, stops)).filter(pays);
         self.known.get_or_init(new).as_ref()
     }
 

@@ -119,13 +119,13 @@ impl SearchMap {
     /// The cells on diagonals at which a search has an event. Costs some hundred operations per
     /// 64 cells.
     pub(crate) fn diagonal_events(&self) -> DiagonalEvents {
-        DiagonalEvents::new(&self.blocked, &self.blocked_transposed, &self.stops)
+        DiagonalEvents::new(&self.blocked, &self.stops)
     }
 
     /// Cached [`Self::diagonal_events`], available once jump point searches have walked enough
     /// for them to pay.
     pub(crate) fn diagonals(&self) -> Option<&DiagonalEvents> {
-        self.diagonals.get(&self.blocked, &self.blocked_transposed, &self.stops)
+        self.diagonals.get(&self.blocked, &self.stops)
     }
 
     /// Records the number of cells on diagonals that a search has walked.

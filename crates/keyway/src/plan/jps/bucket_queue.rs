@@ -136,11 +136,15 @@ impl BucketQueue {
 
     /// Empties the buckets in use.
     fn clear(&mut self) {
-        if self.len > 0 {
-            for bucket in self.current..=self.highest {
-                let slot = self.slot(bucket);
-                self.heads[slot] = 0;
-            }
+        if self.len == 0 {
+            return;
+        }
+        let (first, last) = (self.slot(self.current), self.slot(self.highest));
+        if first <= last {
+            self.heads[first..=last].fill(0);
+        } else {
+            self.heads[..=last].fill(0);
+            self.heads[first..].fill(0);
         }
     }
 

@@ -15,17 +15,15 @@ pub(super) struct NodePages {
     directory: Vec<u32>,
     nodes: Vec<[u64; 2]>,
     epoch: u32,
-    /// The number of the query, modulo a small number, above the bits of a page number.
+    /// The number of the query, modulo `2^32 / numbers`, times `numbers`.
     stamp: u32,
+    /// A power of two, above the number of any page.
+    numbers: u32,
     /// Pages allocated in this query.
     used: u32,
 }
 
 const CELLS_PER_PAGE: usize = 32;
-/// Enough bits for the pages of all indices.
-const NUMBER_BITS: u32 = 27;
-const _: () = assert!((CELLS_PER_PAGE as u64) << NUMBER_BITS > u32::MAX as u64);
-
 impl NodePages {
     /// Number of bits of an epoch.
     pub(super) const EPOCH_BITS: u32 = 24;
@@ -34,15 +32,16 @@ impl NodePages {
     pub(super) fn start(&mut self, index_count: usize) {
         let pages = index_count.div_ceil(CELLS_PER_PAGE);
         if self.directory.len() != pages || self.epoch + 1 == 1 << Self::EPOCH_BITS {
-            *self = Self { directory: vec![0; pages], ..Self::default() };
+            let numbers = (pages as u32).next_power_of_two();
+            *self = Self { directory: vec![0; pages], numbers, ..Self::default() };
             // If the system does not grant that much, the nodes grow on demand.
             _ = self.nodes.try_reserve_exact(pages * CELLS_PER_PAGE);
         }
         self.epoch += 1;
-        self.stamp = self.stamp.wrapping_add(1 << NUMBER_BITS);
+        self.stamp = self.stamp.wrapping_add(self.numbers);
         if self.stamp == 0 {
             self.directory.fill(0);
-            self.stamp = 1 << NUMBER_BITS;
+            self.stamp = self.numbers;
         }
         self.used = 0;
     }
@@ -68,7 +67,7 @@ impl NodePages {
     #[inline]
     pub(super) fn touch(&mut self, index: usize) -> &mut [u64; 2] {
         let mut page = self.directory[index / CELLS_PER_PAGE] ^ self.stamp;
-        if page >> NUMBER_BITS != 0 {
+        if page >= self.numbers {
             page = self.hand_out(index / CELLS_PER_PAGE);
         }
         &mut self.nodes[place(page, index)]
@@ -164,8 +163,10 @@ mod tests {
     /// touches, some had other numbers when its stamp was last in use, and none since.
     #[test]
     fn nothing_of_earlier_queries_is_found() {
-        const STAMPS: usize = (u32::MAX >> NUMBER_BITS) as usize;
+        const STAMPS: usize = 31;
         let mut pages = NodePages::default();
+        pages.start(10 * STAMPS * CELLS_PER_PAGE);
+        (pages.stamp, pages.numbers) = (0, 1 << 27);
         for query in 0..10 * STAMPS {
             pages.start(10 * STAMPS * CELLS_PER_PAGE);
             let epoch = u64::from(pages.epoch());
