@@ -22,6 +22,8 @@
 //! - After many queries on the same map, if few cells on its diagonals are events, diagonals are
 //!   traversed from one event cell to the next (`DiagonalEvents`), 64 cells at a time. The results
 //!   are the same, in the same order.
+//! - If the first leg of that order, diagonal and then straight, leads from start to goal, it is the
+//!   answer, before any node is touched.
 //! - A diagonal is cut off once a jump point seen from it is known to be so near to the start that
 //!   the path over that jump point to the diagonal's cell is shorter than the diagonal. Paths that
 //!   begin with a longer than known path to a cell are not shortest paths, so none is lost.
@@ -37,6 +39,7 @@
 mod bucket_queue;
 mod jump_nodes;
 mod jump_points;
+mod leg;
 mod node_pages;
 
 use super::parameters::{BoxedPlanner, PlannerParameters};
@@ -98,6 +101,10 @@ impl GlobalPlanner for Jps {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
+        if query.budget != Some(0) && leg::leads_to_goal(map, query) {
+            leg::take(query, seen, plan);
+            return Ok(());
+        }
         let nodes = workspace.part::<JumpNodes>();
         match seen {
             None => run(map, query, nodes, &mut ()),
@@ -184,20 +191,6 @@ struct Successors<'s, O> {
     seen: &'s mut O,
 }
 
-impl<O: Observer> Successors<'_, O> {
-    /// Reports a leg, which is diagonal first, then straight.
-    fn report(&mut self, at: Cell, g: u64) {
-        let from = self.from.cell;
-        let turn = turn_of_leg(from, at);
-        for (from, to) in [(from, turn), (turn, at)] {
-            if from != to {
-                self.seen.scanned(Side::Forward, from, to);
-            }
-        }
-        self.seen.generated(Side::Forward, at, from, cells(g));
-    }
-}
-
 impl<O: Observer> JumpVisitor for Successors<'_, O> {
     fn jump_point(&mut self, at: Place, arrival: Arrival, g: u64) -> u64 {
         let index = CellIndex(at.index as u32);
@@ -205,7 +198,7 @@ impl<O: Observer> JumpVisitor for Successors<'_, O> {
         let parent = CellIndex(self.from.index as u32);
         let (known, is_open) = self.nodes.generate(index, g, parent, arrival, h);
         if is_open && self.seen.is_watching() {
-            self.report(at.cell, g);
+            leg::report(self.seen, (self.from.cell, at.cell), g);
         }
         known
     }
@@ -213,7 +206,7 @@ impl<O: Observer> JumpVisitor for Successors<'_, O> {
     fn goal(&mut self, g: u64) {
         let parent = CellIndex(self.from.index as u32);
         if self.nodes.reach_goal(g, parent) && self.seen.is_watching() {
-            self.report(self.goal, g);
+            leg::report(self.seen, (self.from.cell, self.goal), g);
         }
     }
 }
@@ -234,30 +227,12 @@ fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Pla
     while let Some(index) = parent {
         let from = map.cell(index);
         cost = cost + Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y));
-        unfold_leg_backwards(to, from, plan);
+        leg::unfold_backwards(to, from, plan);
         to = from;
         parent = nodes.parent(index);
     }
     plan.reverse_from(0);
     plan.cost = PlanCost::Steps(cost);
-}
-
-/// The cell at which a leg turns from diagonal to straight.
-fn turn_of_leg(from: Cell, to: Cell) -> Cell {
-    let (dx, dy) = (to.x - from.x, to.y - from.y);
-    let diagonal = dx.abs().min(dy.abs());
-    Cell::new(from.x + diagonal * dx.signum(), from.y + diagonal * dy.signum())
-}
-
-/// Appends the cells before `to`; seen from its end, the leg is straight, then diagonal.
-fn unfold_leg_backwards(to: Cell, from: Cell, plan: &mut Plan) {
-    let turn = turn_of_leg(from, to);
-    for (to, from) in [(to, turn), (turn, from)] {
-        let (dx, dy) = (from.x - to.x, from.y - to.y);
-        let step = |k| Cell::new(to.x + k * dx.signum(), to.y + k * dy.signum());
-        plan.cells.extend((1..=dx.abs().max(dy.abs())).map(step));
-        plan.mark_last();
-    }
 }
 
 #[cfg(test)]
@@ -266,22 +241,62 @@ mod tests {
     use crate::map::{CellState, GridFrame, LayerConfig, OccupancyGrid};
     use crate::random::Random;
 
-    /// Results and statistics do not depend on whether diagonals are walked cell by cell or
-    /// traversed by events.
-    #[test]
-    fn passing_diagonals_changes_nothing() {
-        const SIDE: i32 = 200;
-        let mut random = Random::new(46);
+    const SIDE: i32 = 200;
+
+    /// Squares on open ground.
+    fn blocks(random: &mut Random) -> OccupancyGrid {
         let mut below = |limit: i32| random.below(limit as u32) as i32;
         let blocks: Vec<[i32; 3]> =
             (0..40).map(|_| [below(SIDE), below(SIDE), 3 + below(20)]).collect();
         let frame = GridFrame::new(SIDE as u64, SIDE as u64, 1.0, crate::geometry::Pose::default());
-        let grid = OccupancyGrid::from_fn(frame.unwrap(), |Cell { x, y }| {
+        OccupancyGrid::from_fn(frame.unwrap(), |Cell { x, y }| {
             let is_in = |&[left, low, side]: &[i32; 3]| {
                 (left..left + side).contains(&x) && (low..low + side).contains(&y)
             };
             if blocks.iter().any(is_in) { CellState::Occupied } else { CellState::Free }
-        });
+        })
+    }
+
+    /// A path that is a single leg is the one that the search finds.
+    #[test]
+    fn a_leg_is_what_the_search_finds() {
+        let mut random = Random::new(7);
+        let map = SearchMap::new(&blocks(&mut random), LayerConfig::default()).unwrap();
+        let mut nodes = JumpNodes::default();
+        let mut legs = 0;
+        for _ in 0..2000 {
+            let mut below = |limit: i32| random.below(limit as u32) as i32;
+            let [start, goal] = [(); 2].map(|()| Cell::new(below(SIDE), below(SIDE)));
+            let query = Query::new(start, goal);
+            if !map.is_free(start) || !map.is_free(goal) {
+                continue;
+            }
+            let mut searched = Plan::default();
+            if run(&map, &query, &mut nodes, &mut ()).is_err() {
+                continue;
+            }
+            unfold_path(&map, &query, &nodes, &mut searched);
+            let is_leg = leg::leads_to_goal(&map, &query);
+            let length = start.x.abs_diff(goal.x).max(start.y.abs_diff(goal.y)) as usize;
+            let looks_like_one =
+                searched.jump_points.len() <= 3 && searched.cells.len() == length + 1;
+            assert!(is_leg <= looks_like_one, "from {start} to {goal}");
+            let (mut found, mut workspace) = (Plan::default(), Workspace::default());
+            Jps.plan_into(&map, &query, &mut workspace, None, &mut found).unwrap();
+            assert_eq!((&found.cells, &found.cost), (&searched.cells, &searched.cost));
+            assert_eq!(found.jump_points, searched.jump_points);
+            legs += u32::from(is_leg);
+        }
+        assert!(legs > 100, "{legs}");
+    }
+
+    /// Results and statistics do not depend on whether diagonals are walked cell by cell or
+    /// traversed by events.
+    #[test]
+    fn passing_diagonals_changes_nothing() {
+        let mut random = Random::new(46);
+        let grid = blocks(&mut random);
+        let mut below = |limit: i32| random.below(limit as u32) as i32;
         let fresh = || SearchMap::new(&grid, LayerConfig::default()).unwrap();
         let warm = fresh();
         warm.note_walked(u64::from(u32::MAX));

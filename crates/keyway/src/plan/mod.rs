@@ -291,7 +291,8 @@ impl Plan {
 /// decimal fraction.
 const SAME_POINT_M: f64 = 1e-9;
 
-/// Begins a search from the middle of a map to its corner.
+/// Begins a search from the middle of a map to its corner, and plans a step, so that the code that
+/// writes paths is in memory, too.
 fn expand_a_few(
     planner: &(impl GlobalPlanner + ?Sized),
     map: &SearchMap,
@@ -303,6 +304,10 @@ fn expand_a_few(
     let query = Query { budget: Some(64), ..Query::new(start, corner.unwrap_or(start)) };
     // The budget is enough for short queries only, and some planners refuse some maps.
     _ = planner.plan_into(map, &query, workspace, None, &mut Plan::default());
+    let beside = Cell::new(start.x + 1, start.y);
+    let end = map.nearest_connected(start, beside, planner.connectivity()).unwrap_or(start);
+    let step = Query { budget: Some(64), ..Query::new(start, end) };
+    _ = planner.plan_into(map, &step, workspace, None, &mut Plan::default());
 }
 
 /// The exact cost of a path of neighbouring cells on a map, penalties included.
