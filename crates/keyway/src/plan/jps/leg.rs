@@ -69,8 +69,12 @@ pub(super) fn unfold_backwards(to: Cell, from: Cell, plan: &mut Plan) {
     let turn = turn_of(from, to);
     for (to, from) in [(to, turn), (turn, from)] {
         let (dx, dy) = (from.x - to.x, from.y - to.y);
-        let step = |k| Cell::new(to.x + k * dx.signum(), to.y + k * dy.signum());
-        plan.cells.extend((1..=dx.abs().max(dy.abs())).map(step));
+        let (step_x, step_y) = (dx.signum(), dy.signum());
+        let mut at = to;
+        plan.cells.extend((0..dx.abs().max(dy.abs())).map(|_| {
+            at = Cell::new(at.x + step_x, at.y + step_y);
+            at
+        }));
         plan.mark_last();
     }
 }
