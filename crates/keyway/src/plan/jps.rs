@@ -22,8 +22,8 @@
 //! - After many queries on the same map, if few cells on its diagonals are events, diagonals are
 //!   traversed from one event cell to the next (`DiagonalEvents`), 64 cells at a time. The results
 //!   are the same, in the same order.
-//! - If the first leg of that order, diagonal and then straight, leads from start to goal, it is the
-//!   answer, before any node is touched.
+//! - If a free diagonal and then a free straight line lead from the start to the goal, they are the
+//!   answer. No node is touched.
 //! - A diagonal is cut off once a jump point seen from it is known to be so near to the start that
 //!   the path over that jump point to the diagonal's cell is shorter than the diagonal. Paths that
 //!   begin with a longer than known path to a cell are not shortest paths, so none is lost.
@@ -43,7 +43,7 @@ mod leg;
 mod node_pages;
 
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop, expand_a_few};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop, expand_a_few, far_query};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Side, Workspace, cells};
 use jump_nodes::{JumpNode, JumpNodes};
@@ -89,7 +89,12 @@ impl GlobalPlanner for Jps {
     }
 
     fn warm_up(&self, map: &SearchMap, workspace: &mut Workspace) {
-        workspace.part::<JumpNodes>().warm_up(map);
+        let nodes = workspace.part::<JumpNodes>();
+        nodes.warm_up(map);
+        // Not by way of a plan: on open ground that would be a single leg.
+        if let Some(query) = far_query(map, self.connectivity()) {
+            _ = run(map, &query, nodes, &mut ());
+        }
         expand_a_few(self, map, workspace);
     }
 

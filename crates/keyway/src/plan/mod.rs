@@ -193,9 +193,9 @@ pub trait GlobalPlanner: Debug {
     }
 
     /// Does beforehand what the first query on a map would do, so that it is as quick as later
-    /// ones; the results are the same. Labels the components of the map, and expands a few nodes.
-    /// A one-sided jump point search also touches memory, since the first touch of a page costs
-    /// the kernel microseconds: 1/8 byte per cell, and up to 0.5 MB for nodes.
+    /// ones; the results are the same. Labels the components of the map, expands a few nodes, and
+    /// plans a short path. A one-sided jump point search also touches memory, since the first touch
+    /// of a page costs the kernel microseconds: 1/8 byte per cell, and up to 0.5 MB for nodes.
     fn warm_up(&self, map: &SearchMap, workspace: &mut Workspace) {
         expand_a_few(self, map, workspace);
     }
@@ -291,23 +291,29 @@ impl Plan {
 /// decimal fraction.
 const SAME_POINT_M: f64 = 1e-9;
 
-/// Begins a search from the middle of a map to its corner, and plans a step, so that the code that
-/// writes paths is in memory, too.
+/// Begins a search from the middle of a map to its corner, and plans a path to a neighbour, so that
+/// the code that writes paths is in memory, too.
 fn expand_a_few(
     planner: &(impl GlobalPlanner + ?Sized),
     map: &SearchMap,
     workspace: &mut Workspace,
 ) {
-    let centre = Cell::new(map.frame().width() as i32 / 2, map.frame().height() as i32 / 2);
-    let Some(start) = map.nearest_free(centre) else { return };
-    let corner = map.nearest_connected(start, Cell::new(0, 0), planner.connectivity());
-    let query = Query { budget: Some(64), ..Query::new(start, corner.unwrap_or(start)) };
+    let Some(query) = far_query(map, planner.connectivity()) else { return };
     // The budget is enough for short queries only, and some planners refuse some maps.
     _ = planner.plan_into(map, &query, workspace, None, &mut Plan::default());
-    let beside = Cell::new(start.x + 1, start.y);
-    let end = map.nearest_connected(start, beside, planner.connectivity()).unwrap_or(start);
-    let step = Query { budget: Some(64), ..Query::new(start, end) };
-    _ = planner.plan_into(map, &step, workspace, None, &mut Plan::default());
+    let start = query.start;
+    let beside =
+        map.nearest_connected(start, Cell::new(start.x + 1, start.y), planner.connectivity());
+    let near = Query { goal: beside.unwrap_or(start), ..query };
+    _ = planner.plan_into(map, &near, workspace, None, &mut Plan::default());
+}
+
+/// From the middle of a map to its corner, with a budget of 64 nodes; `None` without a free cell.
+fn far_query(map: &SearchMap, connectivity: Connectivity) -> Option<Query> {
+    let centre = Cell::new(map.frame().width() as i32 / 2, map.frame().height() as i32 / 2);
+    let start = map.nearest_free(centre)?;
+    let corner = map.nearest_connected(start, Cell::new(0, 0), connectivity);
+    Some(Query { budget: Some(64), ..Query::new(start, corner.unwrap_or(start)) })
 }
 
 /// The exact cost of a path of neighbouring cells on a map, penalties included.

@@ -123,7 +123,7 @@ fn polish_at(
     for (v, omega) in [(0.0, omega), (v, 0.0)] {
         let old = rest[0];
         let mut best = old;
-        // Of two equal sides, the first one is taken: outwards, which a mirror does not change.
+        // The first of two equal sides is taken. The sharper turn comes first, also in a mirror.
         let omega = omega.copysign(old.omega);
         for (v, omega) in [(v, omega), (-v, -omega)] {
             let wanted = Velocity::new((old.v + v).max(lowest_mps), old.omega + omega);

@@ -42,7 +42,8 @@ impl Targets {
         for speed_mps in [fastest, v.max(lowest_mps), slowest] {
             add(&mut targets.speeds_mps, speed_mps);
         }
-        // Of two equal trajectories the first one is taken: a mirror must not change which.
+        // The first of two equal trajectories is taken. The side of the path comes first, which a
+        // mirror exchanges as well.
         let sides = if bearing_rad < 0.0 { [right, left] } else { [left, right] };
         // A smaller angle is not worth a turn.
         let bearing_rad = if bearing_rad.abs() < Self::FACING_RAD { 0.0 } else { bearing_rad };

@@ -5,8 +5,8 @@ use crate::map::{Cell, SearchMap};
 use crate::plan::{Plan, PlanCost, Stop};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Side, SideStatistics, cells};
 
-/// True if a free leg leads from the start to the goal, which is another cell: the first shortest
-/// path in the order of moves. Touches nothing but the map.
+/// True if a free leg leads from the start to the goal, and they are different cells. That leg is
+/// the first shortest path in the order of moves. Reads nothing but the map.
 pub(super) fn leads_to_goal(map: &SearchMap, query: &Query) -> bool {
     let (start, goal) = (query.start, query.goal);
     match (start.x <= goal.x, start.y <= goal.y) {
@@ -18,7 +18,7 @@ pub(super) fn leads_to_goal(map: &SearchMap, query: &Query) -> bool {
     }
 }
 
-/// The straight line comes first: it is compared 64 cells at a time.
+/// The straight line is tested first: 64 cells at a time.
 fn is_free<const TO_EAST: bool, const TO_NORTH: bool>(map: &SearchMap, query: &Query) -> bool {
     let (start, goal) = (query.start, query.goal);
     let jumps = JumpPoints::new(map, goal, Walked);

@@ -15,15 +15,16 @@ pub(super) struct NodePages {
     directory: Vec<u32>,
     nodes: Vec<[u64; 2]>,
     epoch: u32,
-    /// The number of the query, modulo `2^32 / numbers`, times `numbers`.
+    /// A count of the queries in the bits above those of a page number; never 0 in a query.
     stamp: u32,
     /// A power of two, above the number of any page.
-    numbers: u32,
+    page_numbers: u32,
     /// Pages allocated in this query.
     used: u32,
 }
 
 const CELLS_PER_PAGE: usize = 32;
+
 impl NodePages {
     /// Number of bits of an epoch.
     pub(super) const EPOCH_BITS: u32 = 24;
@@ -32,16 +33,16 @@ impl NodePages {
     pub(super) fn start(&mut self, index_count: usize) {
         let pages = index_count.div_ceil(CELLS_PER_PAGE);
         if self.directory.len() != pages || self.epoch + 1 == 1 << Self::EPOCH_BITS {
-            let numbers = (pages as u32).next_power_of_two();
-            *self = Self { directory: vec![0; pages], numbers, ..Self::default() };
+            let page_numbers = (pages as u32).next_power_of_two();
+            *self = Self { directory: vec![0; pages], page_numbers, ..Self::default() };
             // If the system does not grant that much, the nodes grow on demand.
             _ = self.nodes.try_reserve_exact(pages * CELLS_PER_PAGE);
         }
         self.epoch += 1;
-        self.stamp = self.stamp.wrapping_add(self.numbers);
+        self.stamp = self.stamp.wrapping_add(self.page_numbers);
         if self.stamp == 0 {
             self.directory.fill(0);
-            self.stamp = self.numbers;
+            self.stamp = self.page_numbers;
         }
         self.used = 0;
     }
@@ -67,7 +68,7 @@ impl NodePages {
     #[inline]
     pub(super) fn touch(&mut self, index: usize) -> &mut [u64; 2] {
         let mut page = self.directory[index / CELLS_PER_PAGE] ^ self.stamp;
-        if page >= self.numbers {
+        if page >= self.page_numbers {
             page = self.hand_out(index / CELLS_PER_PAGE);
         }
         &mut self.nodes[place(page, index)]
@@ -159,14 +160,15 @@ mod tests {
         assert_eq!(pages.memory_bytes() - empty, 3 * 512);
     }
 
-    /// The stamps of the directory repeat long before the epochs: of the pages that a query
-    /// touches, some had other numbers when its stamp was last in use, and none since.
+    /// On large maps the stamps of the directory repeat long before the epochs: of the pages that a
+    /// query touches, some had other numbers when its stamp was last in use, and none since.
     #[test]
     fn nothing_of_earlier_queries_is_found() {
+        // As on the largest map: all stamps above 27 bits but 0.
         const STAMPS: usize = 31;
         let mut pages = NodePages::default();
         pages.start(10 * STAMPS * CELLS_PER_PAGE);
-        (pages.stamp, pages.numbers) = (0, 1 << 27);
+        (pages.stamp, pages.page_numbers) = (0, 1 << 27);
         for query in 0..10 * STAMPS {
             pages.start(10 * STAMPS * CELLS_PER_PAGE);
             let epoch = u64::from(pages.epoch());
