@@ -43,7 +43,7 @@ mod leg;
 mod node_pages;
 
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop, expand_a_few, far_query};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop, far_query, plan_a_step};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
 use crate::search::{Cost, Observer, Query, SearchStatistics, Side, Workspace, cells};
 use jump_nodes::{JumpNode, JumpNodes};
@@ -91,11 +91,13 @@ impl GlobalPlanner for Jps {
     fn warm_up(&self, map: &SearchMap, workspace: &mut Workspace) {
         let nodes = workspace.part::<JumpNodes>();
         nodes.warm_up(map);
-        // Not by way of a plan: on open ground that would be a single leg.
+        // Not by way of a plan, which would be a single leg on open ground, and would count as
+        // walking on the map.
         if let Some(query) = far_query(map, self.connectivity()) {
-            _ = run(map, &query, nodes, &mut ());
+            let jumps = JumpPoints::new(map, query.goal, Walked);
+            _ = search(map, &jumps, &query, nodes, &mut ());
+            plan_a_step(self, map, (query.start, workspace));
         }
-        expand_a_few(self, map, workspace);
     }
 
     fn search_into(

@@ -291,8 +291,7 @@ impl Plan {
 /// decimal fraction.
 const SAME_POINT_M: f64 = 1e-9;
 
-/// Begins a search from the middle of a map to its corner, and plans a path to a neighbour, so that
-/// the code that writes paths is in memory, too.
+/// Begins a search from the middle of a map to its corner, and plans a path to a neighbour.
 fn expand_a_few(
     planner: &(impl GlobalPlanner + ?Sized),
     map: &SearchMap,
@@ -301,11 +300,19 @@ fn expand_a_few(
     let Some(query) = far_query(map, planner.connectivity()) else { return };
     // The budget is enough for short queries only, and some planners refuse some maps.
     _ = planner.plan_into(map, &query, workspace, None, &mut Plan::default());
-    let start = query.start;
-    let beside =
-        map.nearest_connected(start, Cell::new(start.x + 1, start.y), planner.connectivity());
-    let near = Query { goal: beside.unwrap_or(start), ..query };
-    _ = planner.plan_into(map, &near, workspace, None, &mut Plan::default());
+    plan_a_step(planner, map, (query.start, workspace));
+}
+
+/// Plans a path to a neighbour, so that the code that writes paths is in memory.
+fn plan_a_step(
+    planner: &(impl GlobalPlanner + ?Sized),
+    map: &SearchMap,
+    (start, workspace): (Cell, &mut Workspace),
+) {
+    let beside = Cell::new(start.x + 1, start.y);
+    let end = map.nearest_connected(start, beside, planner.connectivity()).unwrap_or(start);
+    let query = Query { budget: Some(64), ..Query::new(start, end) };
+    _ = planner.plan_into(map, &query, workspace, None, &mut Plan::default());
 }
 
 /// From the middle of a map to its corner, with a budget of 64 nodes; `None` without a free cell.
