@@ -271,9 +271,15 @@ mod tests {
         let map = SearchMap::new(&blocks(&mut random), LayerConfig::default()).unwrap();
         let mut nodes = JumpNodes::default();
         let mut legs = 0;
-        for _ in 0..2000 {
+        for query in 0..4000 {
             let mut below = |limit: i32| random.below(limit as u32) as i32;
-            let [start, goal] = [(); 2].map(|()| Cell::new(below(SIDE), below(SIDE)));
+            let start = Cell::new(below(SIDE), below(SIDE));
+            // Short ones meet the corners of the squares more often.
+            let reach = if query % 2 == 0 { SIDE } else { 5 };
+            let goal = Cell::new(
+                start.x + below(2 * reach + 1) - reach,
+                start.y + below(2 * reach + 1) - reach,
+            );
             let query = Query::new(start, goal);
             if !map.is_free(start) || !map.is_free(goal) {
                 continue;
