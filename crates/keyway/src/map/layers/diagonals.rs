@@ -246,8 +246,8 @@ pub(in crate::map) struct LazyDiagonals {
 }
 
 impl LazyDiagonals {
-    /// Largest estimated share of free cells with an event at which the events help a jump point search.
-    /// Measured: at 0.4 (a maze with corridors of four cells) it takes a tenth fewer
+    /// Largest estimated share of free cells with an event at which the events help a jump point
+    /// search. Measured: at 0.4 (a maze with corridors of four cells) it takes a tenth fewer
     /// instructions, at 0.9 (clutter) a tenth more.
     const MOST: f64 = 0.5;
 
