@@ -39,13 +39,14 @@
 mod bucket_queue;
 mod jump_nodes;
 mod jump_points;
-mod leg;
 mod node_pages;
 
 use super::parameters::{BoxedPlanner, PlannerParameters};
-use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop, far_query, plan_a_step};
+use super::{GlobalPlanner, Plan, PlanCost, PlanError, Stop, far_query, leg, plan_a_step};
 use crate::map::{Cell, CellIndex, Connectivity, SearchMap};
-use crate::search::{Cost, Observer, Query, SearchStatistics, Side, Workspace, cells};
+use crate::search::{
+    Cost, Observer, Query, SearchStatistics, Side, SideStatistics, Workspace, cells,
+};
 use jump_nodes::{JumpNode, JumpNodes};
 use jump_points::{Arrival, Diagonals, JumpPoints, JumpVisitor, Place, Walked};
 use serde::{Deserialize, Serialize};
@@ -108,8 +109,8 @@ impl GlobalPlanner for Jps {
         seen: Option<&mut dyn Observer>,
         plan: &mut Plan,
     ) -> Result<(), PlanError> {
-        if query.budget != Some(0) && leg::leads_to_goal(map, query) {
-            leg::take(query, seen, plan);
+        if query.budget != Some(0) && is_a_leg(map, query) {
+            take_the_leg(query, seen, plan);
             return Ok(());
         }
         let nodes = workspace.part::<JumpNodes>();
@@ -122,6 +123,39 @@ impl GlobalPlanner for Jps {
         plan.stop = Some(Stop::NothingBetter);
         Ok(())
     }
+}
+
+/// True if a single leg leads from the start to the goal, and they are different cells. It is the
+/// first shortest path in the order of moves.
+fn is_a_leg(map: &SearchMap, query: &Query) -> bool {
+    query.start != query.goal && leg::is_free(map, query.start, query.goal)
+}
+
+/// Fills in the plan of a path that is a single leg.
+fn take_the_leg(query: &Query, seen: Option<&mut dyn Observer>, plan: &mut Plan) {
+    let (start, goal) = (query.start, query.goal);
+    let cost = Cost::octile(start.x.abs_diff(goal.x), start.y.abs_diff(goal.y));
+    if let Some(seen) = seen {
+        seen.expanded(Side::Forward, start, 0.0);
+        report_leg(seen, (start, goal), cost.key());
+    }
+    plan.cells.push(start);
+    plan.mark_last();
+    leg::diagonal_first(start, goal, plan);
+    plan.cost = PlanCost::Steps(cost);
+    plan.statistics = SearchStatistics::one_sided(SideStatistics { expanded: 1, generated: 2 });
+    plan.stop = Some(Stop::NothingBetter);
+}
+
+/// Reports a find at the end of a leg, which is diagonal first, then straight.
+fn report_leg(seen: &mut (impl Observer + ?Sized), (start, end): (Cell, Cell), g: u64) {
+    let turn = leg::turn(start, end);
+    for (from, to) in [(start, turn), (turn, end)] {
+        if from != to {
+            seen.scanned(Side::Forward, from, to);
+        }
+    }
+    seen.generated(Side::Forward, end, start, cells(g));
 }
 
 fn run(
@@ -205,7 +239,7 @@ impl<O: Observer> JumpVisitor for Successors<'_, O> {
         let parent = CellIndex(self.from.index as u32);
         let (known, is_open) = self.nodes.generate(index, g, parent, arrival, h);
         if is_open && self.seen.is_watching() {
-            leg::report(self.seen, (self.from.cell, at.cell), g);
+            report_leg(self.seen, (self.from.cell, at.cell), g);
         }
         known
     }
@@ -213,7 +247,7 @@ impl<O: Observer> JumpVisitor for Successors<'_, O> {
     fn goal(&mut self, g: u64) {
         let parent = CellIndex(self.from.index as u32);
         if self.nodes.reach_goal(g, parent) && self.seen.is_watching() {
-            leg::report(self.seen, (self.from.cell, self.goal), g);
+            report_leg(self.seen, (self.from.cell, self.goal), g);
         }
     }
 }
@@ -234,7 +268,7 @@ fn unfold_path(map: &SearchMap, query: &Query, nodes: &JumpNodes, plan: &mut Pla
     while let Some(index) = parent {
         let from = map.cell(index);
         cost = cost + Cost::octile(from.x.abs_diff(to.x), from.y.abs_diff(to.y));
-        leg::unfold_backwards(to, from, plan);
+        leg::straight_first(to, from, plan);
         to = from;
         parent = nodes.parent(index);
     }
@@ -289,11 +323,11 @@ mod tests {
                 continue;
             }
             unfold_path(&map, &query, &nodes, &mut searched);
-            let is_leg = leg::leads_to_goal(&map, &query);
+            let is_leg = is_a_leg(&map, &query);
             let length = start.x.abs_diff(goal.x).max(start.y.abs_diff(goal.y)) as usize;
             let looks_like_one =
                 searched.jump_points.len() <= 3 && searched.cells.len() == length + 1;
-            assert!(is_leg <= looks_like_one, "from {start} to {goal}");
+            assert!(!is_leg || looks_like_one, "from {start} to {goal}");
             let (mut found, mut workspace) = (Plan::default(), Workspace::default());
             Jps.plan_into(&map, &query, &mut workspace, None, &mut found).unwrap();
             assert_eq!((&found.cells, &found.cost), (&searched.cells, &searched.cost));

@@ -39,6 +39,7 @@ mod hsta;
 mod jps;
 mod jump_points;
 mod lazy_theta_star;
+mod leg;
 mod nearest_first;
 mod parameters;
 mod prepare_progress;

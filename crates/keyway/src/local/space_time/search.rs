@@ -252,8 +252,8 @@ impl Node {
     }
 }
 
-/// A total in steps of 2⁻³⁰ s. Otherwise rounding errors would decide between equal trajectories,
-/// and otherwise in a mirrored world.
+/// A total in steps of 2⁻³⁰ s. Rounding errors would decide between equal trajectories, and would
+/// decide differently in a mirrored world.
 fn rounded_s(total_s: f64) -> f64 {
     // Neighbouring numbers of this size differ by that step.
     const COARSE: f64 = 1.5 * (1_u64 << 22) as f64;

@@ -1,6 +1,6 @@
 //! The cells on diagonals at which a search has an event.
 
-use super::stops::StopBitmaps;
+use super::stops::{StopBitmaps, higher_neighbours, lower_neighbours};
 use crate::map::{BitGrid, Cell};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -117,13 +117,13 @@ fn strips(
             .each_ref()
             .map(|words| &words[words_per_row * y as usize..][..words_per_row]);
         for word in 0..words_per_row {
-            let opens = western(own, word) & !western(next, word)
-                | eastern(own, word) & !eastern(next, word);
+            let opens = lower_neighbours(own, word) & !lower_neighbours(next, word)
+                | higher_neighbours(own, word) & !higher_neighbours(next, word);
             let passes = !(opens | next[word]);
             let along_column = &mut along_column[word];
             *along_column = opens & !next[word] | passes & *along_column;
             let at = word * rows + y as usize + 1;
-            west[at] = western(block, word) | to_west[word] | *along_column;
+            west[at] = lower_neighbours(block, word) | to_west[word] | *along_column;
             east[at] = block[word] | to_east[word] | *along_column;
             if y % Counts::EVERY == Counts::FIRST {
                 counts.add(west[at], own[word]);
@@ -132,16 +132,6 @@ fn strips(
         }
     }
     [west, east]
-}
-
-/// For each cell, the bit of its western neighbour; that of the border is set.
-fn western(row: &[u64], word: usize) -> u64 {
-    row[word] << 1 | if word == 0 { 1 } else { row[word - 1] >> 63 }
-}
-
-/// For each cell, the bit of its eastern neighbour; that of the border is set.
-fn eastern(row: &[u64], word: usize) -> u64 {
-    row[word] >> 1 | row.get(word + 1).map_or(1, |next| next & 1) << 63
 }
 
 /// Strips with diagonals as rows: those that rise to the east, or those that fall. Row by row.

@@ -97,14 +97,22 @@ fn influenced(blocked: &BitGrid, low: Cell, high: Cell) -> (RangeInclusive<i32>,
 
 /// Bits of free cells whose neighbour one bit lower is blocked.
 fn opened_upwards(row: &[u64], word: usize) -> u64 {
-    let carry = if word > 0 { row[word - 1] >> 63 } else { 1 };
-    (row[word] << 1 | carry) & !row[word]
+    lower_neighbours(row, word) & !row[word]
 }
 
 /// Bits of free cells whose neighbour one bit higher is blocked.
 fn opened_downwards(row: &[u64], word: usize) -> u64 {
-    let carry = row.get(word + 1).map_or(1, |next| next & 1);
-    (row[word] >> 1 | carry << 63) & !row[word]
+    higher_neighbours(row, word) & !row[word]
+}
+
+/// For each bit of a word, the bit before it in the row; that before the first one is set.
+pub(super) fn lower_neighbours(row: &[u64], word: usize) -> u64 {
+    row[word] << 1 | if word == 0 { 1 } else { row[word - 1] >> 63 }
+}
+
+/// For each bit of a word, the bit after it in the row; that after the last one is set.
+pub(super) fn higher_neighbours(row: &[u64], word: usize) -> u64 {
+    row[word] >> 1 | row.get(word + 1).map_or(1, |next| next & 1) << 63
 }
 
 #[cfg(test)]

@@ -223,18 +223,14 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
 
     /// True if the 2 x 2 cells that a diagonal step needs are free.
     #[inline]
-    pub(super) fn may_step<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place) -> bool {
+    fn may_step<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place) -> bool {
         let block = usize::from(!TO_EAST) + if TO_NORTH { 0 } else { self.stride };
         !is_set(self.cramped, at.index - block)
     }
 
     /// The place a number of steps along a diagonal.
     #[inline]
-    pub(super) fn moved<const TO_EAST: bool, const TO_NORTH: bool>(
-        &self,
-        at: Place,
-        steps: usize,
-    ) -> Place {
+    fn moved<const TO_EAST: bool, const TO_NORTH: bool>(&self, at: Place, steps: usize) -> Place {
         let Place { cell, index, turned } = at;
         let (x, index, turned) = if TO_EAST {
             (cell.x + steps as i32, index + steps, turned + steps * self.turned_stride)
@@ -308,7 +304,7 @@ impl<'m, D: Diagonals> JumpPoints<'m, D> {
     }
 
     /// True if all cells up to the goal, which lies in the same row or column, are free.
-    pub(super) fn sees_goal(&self, from: Place) -> bool {
+    fn sees_goal(&self, from: Place) -> bool {
         let (dx, dy) = (self.goal.x - from.cell.x, self.goal.y - from.cell.y);
         let span = |at: usize, cells: i32| {
             let far = at.wrapping_add_signed(cells as isize);

@@ -16,6 +16,7 @@ use super::labels::Entry;
 use super::sight::{Sight, Turn, quarter_towards};
 use super::{PlanError, Prepared};
 use crate::map::{Cell, SearchMap};
+use crate::plan::leg;
 use crate::search::{Cost, Observer, Query, SearchStatistics, Side};
 
 /// The shape of a path.
@@ -32,6 +33,7 @@ pub(super) enum Route {
 /// The state of one query.
 pub(super) struct Search<'a, O> {
     pub(super) prepared: &'a Prepared,
+    map: &'a SearchMap,
     pub(super) sight: Sight<'a>,
     pub(super) query: &'a Query,
     pub(super) memory: &'a mut HubMemory,
@@ -57,13 +59,13 @@ impl<'a, O: Observer> Search<'a, O> {
     ) -> Self {
         let statistics = SearchStatistics::default();
         let (sight, best) = (Sight::new(map, &prepared.diagonals), (u64::MAX, Route::Direct));
-        Self { prepared, sight, query, memory, seen, statistics, best }
+        Self { prepared, map, sight, query, memory, seen, statistics, best }
     }
 
     /// Returns the shortest route.
     pub(super) fn run(&mut self) -> Result<Route, PlanError> {
         let Query { start, goal, .. } = *self.query;
-        if self.sight.sees(start, goal) {
+        if leg::is_free(self.map, start, goal) {
             return Ok(Route::Direct);
         }
         self.memory.start(self.prepared.cells.len());
@@ -157,7 +159,7 @@ impl<'a, O: Observer> Search<'a, O> {
         let goal = self.query.goal;
         for access in &self.memory.access[0] {
             let key = access.key + octile_key(access.at, goal);
-            if key < self.best.0 && self.sight.sees(goal, access.at) {
+            if key < self.best.0 && leg::is_free(self.map, goal, access.at) {
                 self.best = (key, Route::Turn(access.at));
             }
         }

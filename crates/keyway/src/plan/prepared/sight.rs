@@ -51,38 +51,6 @@ impl<'m> Sight<'m> {
         }
     }
 
-    /// True if the path to `to`, first diagonal, then straight, is free.
-    pub(super) fn sees(&self, from: Cell, to: Cell) -> bool {
-        let (dx, dy) = (to.x - from.x, to.y - from.y);
-        let step = (dx.signum(), dy.signum());
-        let mut at = from;
-        for _ in 0..dx.abs().min(dy.abs()) {
-            if !self.is_diagonal_free(at, step) {
-                return false;
-            }
-            at = moved(at, step);
-        }
-        let direction = match (to.x - at.x, to.y - at.y) {
-            (0, 0) => return true,
-            (x, 0) => {
-                if x > 0 {
-                    0
-                } else {
-                    2
-                }
-            }
-            (_, y) => {
-                if y > 0 {
-                    1
-                } else {
-                    3
-                }
-            }
-        };
-        let free = self.free_run(at, direction);
-        free >= to.x.abs_diff(at.x) + to.y.abs_diff(at.y)
-    }
-
     /// Calls `found` for the turns straight ahead of `from`, which was reached by `diagonal`
     /// steps, until it returns false.
     pub(super) fn along(
@@ -138,12 +106,6 @@ impl<'m> Sight<'m> {
         let beside = moved(at, side);
         let before = Cell::new(beside.x - ahead.0, beside.y - ahead.1);
         is_set(self.blocked, self.bit(before, 0)) && !is_set(self.blocked, self.bit(beside, 0))
-    }
-
-    /// The number of free cells straight ahead.
-    fn free_run(&self, from: Cell, direction: usize) -> u32 {
-        let bit = self.bit(from, direction);
-        scan(self.blocked_for(direction), bit, direction < 2).abs_diff(bit) as u32 - 1
     }
 
     fn blocked_for(&self, direction: usize) -> &'m [u64] {
@@ -238,17 +200,5 @@ mod tests {
         // From (5, 1) a turn is seen to the east; one step further the obstacle blocks the
         // diagonal.
         assert_eq!(visited, [(5, 1, 1)]);
-    }
-
-    #[test]
-    fn in_sight_along_a_diagonal_and_then_straight() {
-        let sees = |from: (i32, i32), to: (i32, i32)| {
-            with_sight(|sight| sight.sees(Cell::new(from.0, from.1), Cell::new(to.0, to.1)))
-        };
-        assert!(sees((0, 0), (0, 0)) && sees((0, 0), (2, 1)) && sees((4, 1), (4, 3)));
-        assert!(!sees((0, 0), (4, 0)), "through an obstacle");
-        assert!(!sees((5, 1), (6, 3)), "past its corner");
-        assert!(!sees((2, 0), (3, 1)), "beside it");
-        assert!(sees((8, 3), (8, 0)) && sees((8, 1), (0, 1)));
     }
 }

@@ -2,10 +2,10 @@
 //! its turns, and the nodes of the route.
 
 use super::Prepared;
-use super::labels::octant;
 use super::query::Route;
 use crate::map::Cell;
 use crate::plan::Plan;
+use crate::plan::leg::{diagonal_first, run, straight_first};
 use crate::search::{Cost, Query};
 
 impl Prepared {
@@ -67,22 +67,6 @@ impl Prepared {
     }
 }
 
-/// Appends the path to `to`, without `from`: first the diagonal part, then the straight one. The
-/// path is free in this order if it was found from `from`.
-fn diagonal_first(from: Cell, to: Cell, plan: &mut Plan) {
-    let leg = Leg::between(from, to);
-    let at = run(from, leg.diagonal, leg.count, plan);
-    run(at, leg.straight, leg.rest, plan);
-}
-
-/// Appends the path to `to`, without `from`: first the straight part, then the diagonal one. The
-/// path is free in this order if it was found from `to`.
-fn straight_first(from: Cell, to: Cell, plan: &mut Plan) {
-    let leg = Leg::between(from, to);
-    let at = run(from, leg.straight, leg.rest, plan);
-    run(at, leg.diagonal, leg.count, plan);
-}
-
 /// An octile path: `count` diagonal steps, and `rest` straight ones.
 struct Leg {
     diagonal: (i32, i32),
@@ -98,19 +82,6 @@ impl Leg {
         let straight = if octant & 4 == 4 { (0, diagonal.1) } else { (diagonal.0, 0) };
         Self { diagonal, count, straight, rest }
     }
-
-    fn between(from: Cell, to: Cell) -> Self {
-        let Cost { straight, diagonal } = octile(from, to);
-        Self::new(octant(from, to), straight as i32, diagonal as i32)
-    }
-}
-
-/// Appends this many cells beyond `from`; returns the last one.
-fn run(from: Cell, step: (i32, i32), count: i32, plan: &mut Plan) -> Cell {
-    let after = |i: i32| Cell::new(from.x + step.0 * i, from.y + step.1 * i);
-    plan.cells.extend((1..=count).map(after));
-    plan.mark_last();
-    after(count)
 }
 
 fn octile(a: Cell, b: Cell) -> Cost {
