@@ -2,6 +2,7 @@
 
 use super::Plan;
 use crate::map::{Cell, SearchMap};
+use crate::search::bit_scan::is_set;
 
 /// True if the leg that is diagonal first, then straight, is free.
 ///
@@ -19,10 +20,12 @@ pub(super) fn is_free(map: &SearchMap, from: Cell, to: Cell) -> bool {
     };
     let (step_x, step_y) = step(from, turn);
     // The 2 x 2 cells that a step needs are indexed by their south-western one.
-    let first = Cell::new(from.x + step_x.min(0), from.y + step_y.min(0));
-    let is_cramped =
-        |i: i32| map.stops().cramped.get(Cell::new(first.x + i * step_x, first.y + i * step_y));
-    !is_obstructed && !(0..(turn.x - from.x).abs()).any(is_cramped)
+    let cramped = &map.stops().cramped;
+    let first = map.index(Cell::new(from.x + step_x.min(0), from.y + step_y.min(0))).as_usize();
+    let per_step = step_y as isize * cramped.stride() as isize + step_x as isize;
+    let steps = (turn.x - from.x).abs() as isize;
+    let is_cramped = |i| is_set(cramped.words(), first.wrapping_add_signed(i * per_step));
+    !is_obstructed && !(0..steps).any(is_cramped)
 }
 
 /// The cell at which a leg that is diagonal first turns.
