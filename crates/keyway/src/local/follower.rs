@@ -90,7 +90,8 @@ impl Follower {
     fn towards(&self, scene: &Scene<'_>, carrot: Point, left_m: f64) -> Velocity {
         let limits = &self.robot.limits;
         let bearing_rad = scene.pose.bearing_to(carrot);
-        if bearing_rad.abs() > FRAC_PI_2 {
+        let is_behind = bearing_rad.abs() > FRAC_PI_2;
+        if is_behind && limits.turns_in_place() {
             // Limits the turn rate such that the robot can stop at the bearing.
             let fastest = (2.0 * limits.angular_deceleration_radps2 * bearing_rad.abs()).sqrt();
             return Velocity::new(0.0, fastest.copysign(bearing_rad));
@@ -99,6 +100,10 @@ impl Follower {
         // gamma = 2 x / l², with x = l sin(bearing).
         let curvature =
             if distance_m > 0.0 { 2.0 * libm::sin(bearing_rad) / distance_m } else { 0.0 };
+        // A car-like robot drives a loop to what lies behind it.
+        let sharpest = limits.turning_radius_m.recip();
+        let sought = if is_behind { sharpest.copysign(bearing_rad) } else { curvature };
+        let curvature = sought.clamp(-sharpest, sharpest);
         let stop_mps = limits.stoppable_mps(scene.velocity.v, left_m, self.robot.cycle_s);
         let turn_mps = limits.omega_max_radps / curvature.abs();
         let v = limits.v_max_mps.min(stop_mps).min(turn_mps);

@@ -82,7 +82,9 @@ fn stopped<'a>(robot: &Robot, scene: &Scene<'a>) -> (Option<Scene<'a>>, f64) {
 
 fn turn(planner: &impl Remediable, standing: Option<&Scene<'_>>) -> Remedy {
     let not = Remedy { change: Change::Turn { by_rad: PI }, frees: false };
-    let Some(scene) = standing else { return not };
+    let Some(scene) = standing.filter(|_| planner.robot().limits.turns_in_place()) else {
+        return not;
+    };
     let (point, theta) = (scene.pose.point(), scene.pose.theta);
     let towards_rad = TURN_STEP_RAD.copysign(scene.pose.bearing_to(scene.guide));
     let steps = (PI / TURN_STEP_RAD).round() as u32;

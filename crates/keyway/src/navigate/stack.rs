@@ -174,6 +174,9 @@ impl ControllerConfig {
     /// Usual error of a scan-based localisation \[m\]; a cell of most maps.
     const START_ERROR_M: f64 = 0.05;
 
+    /// Tolerance of the goal heading for a car-like robot \[rad\].
+    const CAR_YAW_RAD: f64 = 0.1;
+
     /// Derives the parameters from the robot. The goal tolerance is 0.15 m or half the inscribed
     /// radius, whichever is larger; the least clearance is the inscribed radius plus the margin
     /// of the local planner; and the start tolerance is 5 cm (a cell of most maps, and the usual
@@ -182,7 +185,11 @@ impl ControllerConfig {
     /// enabled, and it backs up by at most twice its circumscribed radius. Moving obstacles are
     /// tracked; there is no stop rule. A blind robot stops.
     pub fn for_robot(robot: &Robot) -> Self {
+        // A car-like robot has no last turn in place.
+        let turns = robot.limits.turns_in_place();
+        let yaw_rad = if turns { Self::PAPER.goal_yaw_tolerance_rad } else { Self::CAR_YAW_RAD };
         Self {
+            goal_yaw_tolerance_rad: yaw_rad,
             goal_tolerance_m: (0.5 * robot.footprint.inscribed_radius_m()).max(0.15),
             least_clearance_m: robot.footprint.inscribed_radius_m()
                 + robot.safety_margin_or_default_m(),

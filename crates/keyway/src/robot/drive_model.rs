@@ -1,7 +1,7 @@
-//! The drive model: motion, braking and stopping of a robot. A differential drive, the only one so
-//! far.
+//! The drive model: motion, braking and stopping of a robot.
 //!
-//! It gives the velocity that a robot reaches in a cycle, its braking, the test for standstill,
+//! A differential drive turns in place; a car-like one has a smallest turning radius
+//! (`turning.rs`). The model gives the velocity that a robot reaches in a cycle, its braking, the test for standstill,
 //! and its motion until it stops. Dynamic windows, the space-time search, the stop rule and the
 //! recovery motions integrate (v, omega) with formulas of their own.
 
@@ -98,8 +98,13 @@ impl CycleCount {
 
 impl Limits {
     /// The nearest velocity within the limits, component by component; 0 for a component that is
-    /// NaN.
+    /// NaN. A turn rate that needs a smaller turning radius than the robot's is reduced.
     pub fn clamped(&self, velocity: Velocity) -> Velocity {
+        self.steered(self.clamped_apart(velocity))
+    }
+
+    /// The same without a turning radius.
+    fn clamped_apart(&self, velocity: Velocity) -> Velocity {
         let known = |value: f64| if value.is_nan() { 0.0 } else { value };
         Velocity::new(
             known(velocity.v).clamp(self.v_min_mps, self.v_max_mps),
@@ -108,9 +113,23 @@ impl Limits {
     }
 
     /// The velocity after `duration_s` if `command` is requested: each component moves towards the
-    /// command as far as its limits and accelerations allow.
+    /// command as far as its limits and accelerations allow. The turn rate of a car-like robot
+    /// also falls with its speed, and it stops before it changes its direction.
     pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
-        let Velocity { v, omega, .. } = self.clamped(command);
+        let reached =
+            self.reached_apart(from, self.steered(self.clamped_apart(command)), duration_s);
+        self.steered_from(from, reached)
+    }
+
+    /// The same without a turning radius: the speed and the turn rate, each on its own, that are
+    /// reached with some value of the other.
+    pub(crate) fn reached_apart(
+        &self,
+        from: Velocity,
+        command: Velocity,
+        duration_s: f64,
+    ) -> Velocity {
+        let Velocity { v, omega, .. } = self.clamped_apart(command);
         Velocity::new(
             approach(from.v, v, self.acceleration_mps2, self.deceleration_mps2, duration_s),
             approach(

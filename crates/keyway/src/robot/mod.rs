@@ -7,6 +7,7 @@ mod drive_model;
 mod footprint;
 mod mount;
 mod sensor;
+mod turning;
 
 use crate::ConfigError;
 use serde::{Deserialize, Serialize};
@@ -19,7 +20,7 @@ pub use footprint::{Circle, Footprint, FootprintError, Polygon};
 pub use mount::Mount;
 pub use sensor::RangeSensor;
 
-/// A differential-drive robot with planar range sensors.
+/// A wheeled robot with planar range sensors: with a differential drive, or car-like.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -45,7 +46,7 @@ pub struct Robot {
     pub sensors: Vec<RangeSensor>,
 }
 
-/// Velocity and acceleration limits of a differential drive.
+/// Velocity and acceleration limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -56,6 +57,10 @@ pub struct Limits {
     pub v_max_mps: f64,
     /// Largest turn rate to either side \[rad/s\], from 0.0001 to 100.
     pub omega_max_radps: f64,
+    /// Smallest turning radius \[m\], up to 100: that of a car-like robot, which turns only while
+    /// it drives. Default: 0, for a robot that turns in place.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub turning_radius_m: f64,
     /// Acceleration \[m/s²\], from 0.0001 to 10000 like those below.
     pub acceleration_mps2: f64,
     /// Deceleration \[m/s²\], positive; the robot stops from full speed within a minute.
@@ -104,6 +109,12 @@ impl Robot {
                 "0, or negative for a robot that backs up, and at least -100",
             ),
             ("limits.omega_max_radps", omega_max_radps, speeds, speed),
+            (
+                "limits.turning_radius_m",
+                self.limits.turning_radius_m,
+                0.0..=100.0,
+                "a length from 0 to 100 m",
+            ),
             ("limits.acceleration_mps2", acceleration_mps2, rates.clone(), rate),
             ("limits.deceleration_mps2", deceleration_mps2, rates.clone(), rate),
             (
@@ -120,9 +131,16 @@ impl Robot {
             return Err(ConfigError::must_be(field, expected, value));
         }
         self.validate_sensors()?;
+        self.limits.check_turning()?;
         self.limits.check_jerks(self.cycle_s)?;
         self.limits.check_stopping()
     }
+}
+
+/// True for 0, the default of a value that is left out of files.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Robot {

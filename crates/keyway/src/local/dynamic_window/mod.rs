@@ -104,11 +104,19 @@ const TURNS_TOO_FAST: &str = "turns-too-fast";
 /// It leads into a moving obstacle ([`MoverRule`]).
 const MOVER: &str = Rejections::MOVER;
 
-const RULES: [(&str, &str); 4] = [
+/// The wheels of a car-like robot cannot do it: it is tighter than its turning radius, or passes
+/// through standstill.
+const TURNING_RADIUS: &str = "turning-radius";
+
+/// Rounding of turn rates.
+const ROUNDING_RADPS: f64 = 1e-9;
+
+const RULES: [(&str, &str); 5] = [
     (CONTACT, "touch something"),
     (CANNOT_STOP, "could not stop in time"),
     (TURNS_TOO_FAST, "turn too fast"),
     (MOVER, "lead into a moving obstacle"),
+    (TURNING_RADIUS, "turn too tightly, or change the direction without a stop"),
 ];
 
 /// Working memory of a decision.
@@ -228,8 +236,19 @@ impl DynamicWindow {
     /// Applies the rules to the candidates, and counts. Contact has been refused already.
     fn refuse(&self, scene: &Scene<'_>, lattice: &Lattice, rollouts: &mut Rollouts) -> Evaluation {
         let candidates = lattice.len() as u32;
-        let mut rejected = Rejections::none_by(&RULES);
+        let limits = &self.robot.limits;
+        // Only a car-like robot knows the last rule.
+        let rules = &RULES[..RULES.len() - usize::from(limits.turns_in_place())];
+        let mut rejected = Rejections::none_by(rules);
         rejected.add_many(CONTACT, candidates - rollouts.count(lattice, |_| true));
+        if !limits.turns_in_place() {
+            rollouts.retain(lattice, |Velocity { v, omega, .. }, distances_m| {
+                let is_wide = omega.abs() <= limits.turn_rate_at(v) + ROUNDING_RADPS;
+                let reverses = scene.velocity.v * v < 0.0;
+                let admitted = (is_wide && !reverses).then_some(distances_m.evaluated_m);
+                admitted.ok_or_else(|| rejected.add(TURNING_RADIUS)).ok()
+            });
+        }
         if self.config.admissible != Admissible::Rollout || !scene.movers.is_empty() {
             let mover_rule = self.mover_rule(scene);
             rollouts.retain(lattice, |velocity, distances_m| {

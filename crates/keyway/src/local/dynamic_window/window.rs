@@ -12,6 +12,7 @@ pub(super) struct Window {
 }
 
 impl Window {
+    /// Speeds and turn rates each on their own: not all of their pairs are those of a car-like robot.
     pub(super) fn of(robot: &Robot, from: Velocity, remaining_m: f64, backwards: bool) -> Self {
         let Robot { limits, cycle_s, .. } = robot;
         let stoppable_mps = limits.stoppable_mps(from.v, remaining_m, *cycle_s);
@@ -20,8 +21,8 @@ impl Window {
         let all_down = Velocity::new(v_min_mps, -limits.omega_max_radps);
         let all_up = Velocity::new(v_max_mps, limits.omega_max_radps);
         Self {
-            slowest: limits.reached(from, all_down, *cycle_s),
-            fastest: limits.reached(from, all_up, *cycle_s),
+            slowest: limits.reached_apart(from, all_down, *cycle_s),
+            fastest: limits.reached_apart(from, all_up, *cycle_s),
         }
     }
 

@@ -91,7 +91,9 @@ impl SpaceTime {
         let can_reverse = self.config.backwards && limits.v_min_mps < 0.0;
         let driven = Driven { limits, can_reverse };
         let room_m = |place: Point| room.of_point(place);
-        pose_cost.fill((lattice, cost_to_go), room_m, (&ground, driven), robot, &end);
+        let (sin, cos) = libm::sincos(scene.pose.theta - frame.origin().theta);
+        let from = (robot, Point::new(cos, sin));
+        pose_cost.fill((lattice, cost_to_go), room_m, (&ground, driven), from, &end);
     }
 
     fn weighing(&self) -> Weighing {

@@ -303,8 +303,8 @@ impl Judge<'_> {
         if let Some(heading_s) = self.pose_cost.of(state.at, state.ahead) {
             return profile_s(self.limits, state.velocity.v * cos, left_m) + heading_s;
         }
-        let Limits { v_max_mps, omega_max_radps, acceleration_mps2, .. } = *self.limits;
-        let around_s = PI / omega_max_radps + v_max_mps / acceleration_mps2;
+        let Limits { v_max_mps, acceleration_mps2, .. } = *self.limits;
+        let around_s = PI / self.limits.turn_rate_at(v_max_mps) + v_max_mps / acceleration_mps2;
         // At the end there is no direction to turn to.
         let near_m = self.outline.inscribed_m.max(self.room.spacing_m());
         let turning_s = 0.5 * (1.0 - cos) * around_s * (left_m / near_m).min(1.0);

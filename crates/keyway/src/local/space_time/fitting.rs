@@ -99,9 +99,10 @@ impl Fitting {
             let Some(number) = near.number(near.place((x, y))) else { continue };
             self.is_known[number] = true;
             let at_m = room_m(lattice.position(x, y));
-            if at_m >= ground.turning_m {
+            let is_free = at_m + half_m >= ground.inscribed_m;
+            if at_m >= ground.turning_m || is_free && !ground.blocked.is_useful() {
                 (self.free[number], self.turning[number]) = (Sectors::MAX, Sectors::MAX);
-            } else if at_m + half_m >= ground.inscribed_m {
+            } else if is_free {
                 if !is_tried {
                     tries.collect(lattice, (tile(x), tile(y)), (&mut self.xs, &mut self.ys));
                     self.places.fill((&self.xs, &self.ys), ground.blocked, ground.obstacles);

@@ -162,9 +162,6 @@ impl SpaceTime {
     /// otherwise.
     const NEARER: [f64; 2] = [0.5, 0.2];
 
-    /// A heading whose cost is below this is right \[s\].
-    const TURNED_S: f64 = 0.3;
-
     /// Creates a planner for a robot.
     ///
     /// # Errors
@@ -311,7 +308,7 @@ impl SpaceTime {
             remaining_m: scene.remaining_m,
         };
         // A robot that has to turn elsewhere may have to leave the end of its route once more.
-        if around.pose_cost.of(at, ahead).is_some_and(|heading_s| heading_s > Self::TURNED_S) {
+        if around.pose_cost.turns_elsewhere(at, ahead) {
             judge.remaining_m = f64::INFINITY;
         }
         // No trajectory needs to be longer than the route: near the end, stretches become finer.

@@ -13,17 +13,24 @@ pub(super) struct Near {
     numbers: Vec<u32>,
     /// Place of each point.
     places: Vec<u32>,
+    /// Width of the border: the longest step along an axis.
+    border: usize,
 }
 
 const NONE: u32 = u32::MAX;
 
-/// Width of the border: the longest step along an axis.
-const BORDER: usize = 2;
-
 impl Near {
-    /// Collects the points that are no farther than this from a path.
-    pub(super) fn collect(&mut self, lattice: Lattice, way: &[Point], within_m: f64) {
+    /// Collects the points that are no farther than this from a path, for steps of at most
+    /// `longest_step` points along an axis.
+    pub(super) fn collect(
+        &mut self,
+        lattice: Lattice,
+        way: &[Point],
+        within_m: f64,
+        longest_step: usize,
+    ) {
         self.lattice = lattice;
+        self.border = longest_step;
         self.numbers.clear();
         self.numbers.resize(self.stride() * self.stride(), NONE);
         self.places.clear();
@@ -65,17 +72,17 @@ impl Near {
     }
 
     const fn stride(&self) -> usize {
-        self.lattice.side + 2 * BORDER
+        self.lattice.side + 2 * self.border
     }
 
     /// The place of a point of the lattice.
     pub(super) const fn place(&self, (x, y): (usize, usize)) -> usize {
-        (y + BORDER) * self.stride() + x + BORDER
+        (y + self.border) * self.stride() + x + self.border
     }
 
     /// Column and row of the point at a place.
     pub(super) const fn point(&self, place: usize) -> (usize, usize) {
-        (place % self.stride() - BORDER, place / self.stride() - BORDER)
+        (place % self.stride() - self.border, place / self.stride() - self.border)
     }
 
     /// Number of the point at a place, if one is near the path.

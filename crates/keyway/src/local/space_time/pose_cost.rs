@@ -11,7 +11,8 @@
 //! on the same lattice, so that both contain the same discretization error.
 //!
 //! # Cost
-//! None for round robots, nor if the robot can turn everywhere along its path. Otherwise linear
+//! None for round robots, nor if the robot can turn everywhere along its path: in place or, car-like,
+//! as gently as the path bends. Otherwise linear
 //! in the places near that path, with 32 headings each; headings are checked only at places that
 //! the search reaches.
 
@@ -19,9 +20,12 @@ use super::cost_to_go::CostToGo;
 use super::fitting::{Fitting, Ground};
 use super::lattice::Lattice;
 use super::near::Near;
-use super::pose_times::{HEADING_RAD, HEADINGS, MotionTicks, PoseTimes, STEP_TICKS, WayEnd};
+use super::pose_times::{
+    Facing, HEADING_RAD, HEADINGS, MotionTicks, PoseTimes, STEP_TICKS, WayEnd,
+};
 use crate::geometry::Point;
 use crate::robot::Limits;
+use std::f64::consts::TAU;
 
 /// Costs of headings at the places near the path.
 #[derive(Debug, Default)]
@@ -34,6 +38,52 @@ pub(super) struct PoseCost {
     most_s: f64,
     is_active: bool,
     way: Vec<Point>,
+    last: Option<LastTurn>,
+}
+
+/// The heading at the end of the path, for a robot that cannot turn there in place.
+#[derive(Clone, Copy, Debug)]
+struct LastTurn {
+    end: Point,
+    facing: Point,
+    /// Distance from the end at which it begins to matter \[m\].
+    near_m: f64,
+    /// Cost of a heading that is off by more than [`Self::OFF_RAD`] \[s\], and of each radian.
+    once_s: f64,
+    radian_s: f64,
+}
+
+impl LastTurn {
+    /// A smaller error is worth a part of a manoeuvre only \[rad\].
+    const OFF_RAD: f64 = 0.1;
+
+    fn new(end: &WayEnd, driven: Driven<'_>, spacing_m: f64) -> Option<Self> {
+        let Limits { turning_radius_m, v_max_mps, v_min_mps, acceleration_mps2, .. } =
+            *driven.limits;
+        let Facing::At(facing_rad) = end.facing else { return None };
+        if turning_radius_m == 0.0 {
+            return None;
+        }
+        let (sin, cos) = libm::sincos(facing_rad);
+        let (ahead_s, start_s) = (turning_radius_m / v_max_mps, v_max_mps / acceleration_mps2);
+        // An arc ahead and one back turn by half of the angle each; or a whole loop.
+        let (once_s, radian_s) = if driven.can_reverse {
+            (start_s, 0.5 * (ahead_s - turning_radius_m / v_min_mps))
+        } else {
+            (TAU * ahead_s, 0.0)
+        };
+        let (facing, near_m) = (Point::new(cos, sin), turning_radius_m.max(2.0 * spacing_m));
+        Some(Self { end: end.at, facing, near_m, once_s, radian_s })
+    }
+
+    /// The cost of a heading near the end, in place of that of the lattice, whose headings are
+    /// coarse.
+    fn over(&self, at: Point, ahead: Point, of_lattice_s: f64) -> f64 {
+        let part = (1.0 - at.distance(self.end) / self.near_m).max(0.0);
+        let off_rad = libm::atan2(self.facing.cross(ahead), self.facing.dot(ahead)).abs();
+        let last_s = (off_rad / Self::OFF_RAD).min(1.0) * self.once_s + off_rad * self.radian_s;
+        part * last_s + (1.0 - part) * of_lattice_s
+    }
 }
 
 /// The motions of a robot.
@@ -50,27 +100,73 @@ impl PoseCost {
         (lattice, cost_to_go): (Lattice, &CostToGo),
         room_m: impl Fn(Point) -> f64,
         (ground, driven): (&Ground<'_>, Driven<'_>),
-        robot: Point,
+        (robot, ahead): (Point, Point),
         end: &WayEnd,
     ) {
         self.is_active = false;
-        if !ground.blocked.is_useful() {
+        let radius_m = driven.limits.turning_radius_m;
+        if radius_m == 0.0 && !ground.blocked.is_useful() {
             return;
         }
         self.follow((&lattice, cost_to_go), robot, end.at);
         let is_tight = |at: &Point| room_m(*at) < ground.turning_m;
-        if !self.way.iter().any(is_tight) {
+        if !self.way.iter().any(is_tight) && self.is_gentle(ahead, radius_m, end.facing) {
             return;
         }
         let Self { near, fitting, times, tick_s, .. } = self;
-        near.collect(lattice, &self.way, 2.0 * ground.turning_m);
-        fitting.begin(near);
         *tick_s = lattice.spacing_m / (STEP_TICKS * driven.limits.v_max_mps);
-        let motions = MotionTicks::new(driven.limits, driven.can_reverse, *tick_s);
+        let spacing_m = lattice.spacing_m;
+        let motions = MotionTicks::new(driven.limits, driven.can_reverse, (*tick_s, spacing_m));
+        self.last = LastTurn::new(end, driven, spacing_m);
+        // A loop to a heading needs more room than a bend.
+        let loops = if self.last.is_some() { 3.0 } else { 1.0 };
+        let within_m = 2.0 * ground.turning_m + loops * radius_m;
+        near.collect(lattice, &self.way, within_m, motions.longest_step());
+        fitting.begin(near);
         times.fill((near, fitting), (room_m, ground), &motions, end);
         self.most_s = f64::from(times.longest()) * *tick_s;
         self.is_active = true;
     }
+
+    /// True if the path of a point, from a direction on, bends no more than a turning radius
+    /// allows, and may end at any heading: then a car-like robot can follow it.
+    fn is_gentle(&self, ahead: Point, radius_m: f64, facing: Facing) -> bool {
+        if radius_m == 0.0 {
+            return true;
+        }
+        if matches!(facing, Facing::At(_) | Facing::Back(_)) {
+            return false;
+        }
+        let is_beside = |a: Point, b: Point| {
+            let turn_rad = libm::atan2(a.cross(b), a.dot(b));
+            turn_rad.abs() <= Self::GENTLE_RAD
+        };
+        let (mut from, mut heading) = (self.way[0], ahead);
+        for &to in &self.way[1..] {
+            let stretch = to - from;
+            if stretch.norm() < Self::GENTLE_RAD * radius_m {
+                continue;
+            }
+            if !is_beside(heading, stretch) {
+                return false;
+            }
+            (from, heading) = (to, stretch);
+        }
+        true
+    }
+
+    /// Largest change of the direction from stretch to stretch of a gentle path, each as long as an
+    /// arc of this angle \[rad\].
+    const GENTLE_RAD: f64 = 0.5;
+
+    /// True if the robot has to turn elsewhere before it stops here.
+    pub(super) fn turns_elsewhere(&self, at: Point, ahead: Point) -> bool {
+        let turned_s = self.last.map_or(Self::TURNED_S, |last| 0.5 * last.once_s);
+        self.of(at, ahead).is_some_and(|heading_s| heading_s > turned_s)
+    }
+
+    /// A heading whose cost is below this is right \[s\].
+    const TURNED_S: f64 = 0.3;
 
     /// True if headings matter somewhere along the path.
     pub(super) const fn is_active(&self) -> bool {
@@ -141,6 +237,7 @@ impl PoseCost {
         }
         // Tiny weights are rounding errors.
         let heading_s = if weights > 1e-3 { sum_s / weights } else { self.most_s };
+        let heading_s = self.last.map_or(heading_s, |last| last.over(at, ahead, heading_s));
         // Rounding must not decide between two trajectories.
         Some(f64::from(heading_s as f32))
     }

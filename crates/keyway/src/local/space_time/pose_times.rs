@@ -180,11 +180,17 @@ impl PoseTimes {
                 self.reach(near, place as usize, headings, now);
                 ends += 1;
             }
-            self.turn_to(now, (near, fitting), motions);
+            if motions.turns_in_place {
+                self.turn_to(now, (near, fitting), motions);
+            }
             for (kind, ahead) in AHEAD.into_iter().enumerate() {
-                self.step_to(now, near, (kind, ahead, true), motions.turn);
-                if motions.can_reverse {
-                    self.step_to(now, near, (kind, motions.back[kind], false), motions.turn);
+                let back = motions.can_reverse.then_some((kind, motions.back[kind], false));
+                for step in [(kind, ahead, true)].into_iter().chain(back) {
+                    if motions.turns_in_place {
+                        self.step_to(now, near, step, motions.turn);
+                    } else {
+                        self.arc_to(now, near, step, motions);
+                    }
                 }
             }
             self.all.end(now);
@@ -244,6 +250,30 @@ impl PoseTimes {
             let Pose { place, heading, direction } = self.along[kind].get(index);
             let headings = sides(1 << heading);
             self.reach(near, place.wrapping_add_signed(steps[direction]), headings, now);
+        }
+    }
+
+    /// Reaches the poses from which a car-like robot drives a step of a kind, or an arc to the next
+    /// heading, to those settled as many ticks before.
+    fn arc_to(
+        &mut self,
+        now: u16,
+        near: &Near,
+        (kind, ticks, is_ahead): (usize, u16, bool),
+        motions: &MotionTicks,
+    ) {
+        let steps = motions.arc_steps[kind];
+        let arc = (ticks * steps).max(motions.turn).min(Done::TICKS as u16 - 1);
+        let sides = |own: Sectors| own.rotate_left(1) | own.rotate_right(1);
+        for (count, ticks, turns) in [(1, ticks, false), (steps, arc, true)] {
+            let signed = if is_ahead { -i32::from(count) } else { i32::from(count) };
+            let offsets = STEPS.map(|(dx, dy)| near.step((signed * dx, signed * dy)));
+            for index in self.along[kind].before(now, ticks) {
+                let Pose { place, heading, direction } = self.along[kind].get(index);
+                let own = 1 << heading;
+                let headings = if turns { sides(own) } else { own };
+                self.reach(near, place.wrapping_add_signed(offsets[direction]), headings, now);
+            }
         }
     }
 
@@ -363,30 +393,48 @@ impl Buckets {
     }
 }
 
-/// Durations of motions, in ticks.
+/// Motions of a robot, and their durations in ticks.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MotionTicks {
     /// Turn to the next heading.
     turn: u16,
+    turns_in_place: bool,
+    /// Steps of an arc to the next heading, by kinds, of a robot that does not turn in place.
+    arc_steps: [u16; KINDS],
     can_reverse: bool,
     /// Step back, by kinds.
     back: [u16; KINDS],
 }
 
 impl MotionTicks {
-    /// Durations for a robot, in ticks of `tick_s`.
-    pub(super) fn new(limits: &Limits, can_reverse: bool, tick_s: f64) -> Self {
-        let Limits { v_max_mps, v_min_mps, omega_max_radps, .. } = *limits;
+    /// With more steps, an arc could lead across a wall: no point within an inscribed radius of it
+    /// is free.
+    const MOST_ARC_STEPS: f64 = 6.0;
+
+    /// Motions of a robot, in ticks of `tick_s` and steps of `step_m`.
+    pub(super) fn new(limits: &Limits, can_reverse: bool, (tick_s, step_m): (f64, f64)) -> Self {
+        let Limits { v_max_mps, v_min_mps, omega_max_radps, turning_radius_m, .. } = *limits;
         let ticks = |time_s: f64| (time_s / tick_s).round().clamp(1.0, 255.0) as u16;
         let turn = ticks(HEADING_RAD / omega_max_radps);
         let slower = if can_reverse { (v_max_mps / -v_min_mps).clamp(1.0, 25.0) } else { 0.0 };
         let back = AHEAD.map(|ahead| (f64::from(ahead) * slower).round() as u16);
-        Self { turn, can_reverse, back }
+        let arc_m = turning_radius_m * HEADING_RAD;
+        let arc_steps = AHEAD.map(|ahead| {
+            let one_m = f64::from(ahead) / STEP_TICKS * step_m;
+            (arc_m / one_m).round().clamp(1.0, Self::MOST_ARC_STEPS) as u16
+        });
+        Self { turn, turns_in_place: limits.turns_in_place(), arc_steps, can_reverse, back }
     }
 
     /// Duration of the longest motion.
     fn longest(&self) -> u16 {
-        self.back.into_iter().chain(AHEAD).fold(self.turn, u16::max)
+        let steps = self.back.into_iter().chain(AHEAD).fold(self.turn, u16::max);
+        if self.turns_in_place { steps } else { Done::TICKS as u16 - 1 }
+    }
+
+    /// Number of points along an axis from the beginning of a motion to its end, at most.
+    pub(super) fn longest_step(&self) -> usize {
+        usize::from(2 * self.arc_steps.into_iter().fold(1, u16::max))
     }
 
     /// Time to go at the end of the path at a heading; `None` if the path does not end there.

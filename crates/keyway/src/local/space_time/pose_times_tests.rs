@@ -16,7 +16,7 @@ fn everywhere() -> (Near, Point) {
     let lattice = Lattice::around(&frame, middle, 5.0, 1.0);
     assert_eq!(lattice.side, SIDE);
     let mut near = Near::default();
-    near.collect(lattice, &[middle], 99.0);
+    near.collect(lattice, &[middle], 99.0, 12);
     assert_eq!(near.count(), SIDE * SIDE);
     (near, middle)
 }
@@ -46,7 +46,7 @@ fn relaxed(
                 };
                 let (left, right) = ((heading + 1) % HEADINGS, (heading + HEADINGS - 1) % HEADINGS);
                 for (side, from) in [(left, heading), (right, right)] {
-                    if fitting.turning(number) >> from & 1 == 1 {
+                    if motions.turns_in_place && fitting.turning(number) >> from & 1 == 1 {
                         lower(number, side, motions.turn);
                     }
                 }
@@ -61,11 +61,22 @@ fn relaxed(
                             continue;
                         }
                         let place = near.places()[number] as usize;
-                        let from = near.number(place.wrapping_add_signed(near.step(step)));
-                        let Some(from) = from else { continue };
-                        lower(from, heading, ticks);
-                        lower(from, left, ticks.max(motions.turn));
-                        lower(from, right, ticks.max(motions.turn));
+                        let (x, y) = step;
+                        let steps = motions.arc_steps[kind(direction)];
+                        let far = (i32::from(steps) * x, i32::from(steps) * y);
+                        let arc_ticks = (steps * ticks).max(motions.turn).min(511);
+                        let [straight, turned] = if motions.turns_in_place {
+                            [(step, ticks), (step, ticks.max(motions.turn))]
+                        } else {
+                            [(step, ticks), (far, arc_ticks)]
+                        };
+                        for ((step, ticks), headings) in
+                            [(straight, vec![heading]), (turned, vec![left, right])]
+                        {
+                            let from = near.number(place.wrapping_add_signed(near.step(step)));
+                            let Some(from) = from else { continue };
+                            headings.into_iter().for_each(|heading| lower(from, heading, ticks));
+                        }
                     }
                 }
             }
@@ -94,7 +105,9 @@ fn times_are_those_of_the_relaxation_of_all_motions() {
         let mut limits = Robot::jackal().limits;
         limits.v_min_mps = [0.0, -0.1, -0.5, -2.0][round / 4 % 4];
         limits.omega_max_radps = [0.05, 0.4, 1.5, 6.0][round / 2 % 4];
-        let motions = MotionTicks::new(&limits, limits.v_min_mps < 0.0, 0.1 / limits.v_max_mps);
+        limits.turning_radius_m = [0.0, 0.0, 1.0, 4.0, 40.0][round % 5];
+        let motions =
+            MotionTicks::new(&limits, limits.v_min_mps < 0.0, (0.1 / limits.v_max_mps, 0.4));
         let facing = match round % 3 {
             0 => Facing::Any,
             1 => Facing::At(1.0),

@@ -4,11 +4,10 @@ use super::course::{Judge, State};
 use crate::geometry::Velocity;
 use arrayvec::ArrayVec;
 
-/// All pairs of these speeds and turn rates.
+/// Pairs of a few speeds and turn rates.
 #[derive(Debug, Default)]
 pub(super) struct Targets {
-    speeds_mps: ArrayVec<f64, 5>,
-    rates_radps: ArrayVec<f64, 12>,
+    velocities: ArrayVec<Velocity, 60>,
 }
 
 impl Targets {
@@ -26,11 +25,13 @@ impl Targets {
     /// that turns towards the path, and in a narrow passage the one that leads to its middle. At
     /// the beginning of a trajectory (`is_near`), also those halfway to the slowest and to the
     /// sides. Near rest, also a gentle acceleration, and wide arcs if there is no space to turn
-    /// on the spot: on them a polygon gets away from a wall.
+    /// on the spot: on them a polygon gets away from a wall. A car-like robot has in place of each
+    /// pair the velocity that it reaches instead.
     pub(super) fn of(state: &State, judge: &Judge<'_>, lowest_mps: f64, is_near: bool) -> Self {
         let (limits, stretch_s) = (judge.limits, judge.stretch_s);
         let Velocity { v, omega, .. } = state.velocity;
-        let reached = |v, omega| limits.reached(state.velocity, Velocity::new(v, omega), stretch_s);
+        let reached =
+            |v, omega| limits.reached_apart(state.velocity, Velocity::new(v, omega), stretch_s);
         let speed = |wanted_mps: f64| reached(wanted_mps, omega).v;
         let rate = |wanted_radps: f64| reached(v, wanted_radps).omega;
         let (fastest, slowest) = (speed(limits.v_max_mps), speed(lowest_mps));
@@ -38,9 +39,10 @@ impl Targets {
         let (left, right) = (rate(most), rate(-most));
         let (_, way) = judge.cost_to_go.way(state.at);
         let bearing_rad = libm::atan2(state.ahead.cross(way), state.ahead.dot(way));
-        let mut targets = Self::default();
+        let mut speeds_mps = ArrayVec::<f64, 5>::new();
+        let mut rates_radps = ArrayVec::<f64, 12>::new();
         for speed_mps in [fastest, v.max(lowest_mps), slowest] {
-            add(&mut targets.speeds_mps, speed_mps);
+            add(&mut speeds_mps, speed_mps);
         }
         // The first of two equal trajectories is taken. The side of the path comes first, which a
         // mirror exchanges as well.
@@ -49,36 +51,50 @@ impl Targets {
         let bearing_rad = if bearing_rad.abs() < Self::FACING_RAD { 0.0 } else { bearing_rad };
         let [inner, outer] = sides;
         for rate_radps in [inner, outer, rate(0.0), rate(bearing_rad / stretch_s)] {
-            add(&mut targets.rates_radps, rate_radps);
+            add(&mut rates_radps, rate_radps);
         }
         if let Some(rate_radps) = judge.to_middle_radps(state) {
-            add(&mut targets.rates_radps, rate(rate_radps));
+            add(&mut rates_radps, rate(rate_radps));
         }
         if is_near {
-            add(&mut targets.speeds_mps, 0.5 * (v + slowest));
+            add(&mut speeds_mps, 0.5 * (v + slowest));
             let gently = Self::GENTLY * (fastest - v);
             if v < gently {
-                add(&mut targets.speeds_mps, v + gently);
+                add(&mut speeds_mps, v + gently);
                 if judge.short_of_turning(state.at) > 0.0 {
                     for part in Self::WIDELY {
                         for side in sides {
-                            add(&mut targets.rates_radps, omega + part * (side - omega));
+                            add(&mut rates_radps, omega + part * (side - omega));
                         }
                     }
                 }
             }
             for rate_radps in [omega, 0.5 * (omega + inner), 0.5 * (omega + outer)] {
-                add(&mut targets.rates_radps, rate_radps);
+                add(&mut rates_radps, rate_radps);
             }
+        }
+        let mut targets = Self::default();
+        for &v in &speeds_mps {
+            targets.add(rates_radps.iter().map(|&omega| Velocity::new(v, omega)), state, judge);
         }
         targets
     }
 
+    fn add(&mut self, pairs: impl Iterator<Item = Velocity>, state: &State, judge: &Judge<'_>) {
+        if judge.limits.turns_in_place() {
+            self.velocities.extend(pairs);
+            return;
+        }
+        for pair in pairs {
+            let reached = judge.limits.reached(state.velocity, pair, judge.stretch_s);
+            if !self.velocities.contains(&reached) {
+                self.velocities.push(reached);
+            }
+        }
+    }
+
     pub(super) fn velocities(&self) -> impl Iterator<Item = Velocity> + '_ {
-        let rates = &self.rates_radps;
-        self.speeds_mps
-            .iter()
-            .flat_map(|&v| rates.iter().map(move |&omega| Velocity::new(v, omega)))
+        self.velocities.iter().copied()
     }
 }
 

@@ -5,6 +5,7 @@ use super::{Clearance, DistanceField};
 use crate::geometry::{Point, Pose, Square, holds_point, outline};
 use crate::robot::{Footprint, Polygon};
 
+mod arc;
 mod core;
 mod drive;
 mod line;

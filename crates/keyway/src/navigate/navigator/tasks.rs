@@ -116,11 +116,16 @@ impl Navigator {
     /// there is no space, it waits until its time is over.
     ///
     /// # Errors
-    /// Returns [`ConfigError`] for an angle that is not finite, and for a time that is not
-    /// positive. The robot then continues as before.
+    /// Returns [`ConfigError`] for an angle that is not finite, for a robot that cannot turn in
+    /// place, and for a time that is not positive. The robot then continues as before.
     pub fn spin(&mut self, angle_rad: f64, allowance_s: f64) -> Result<(), ConfigError> {
         if !angle_rad.is_finite() {
             return Err(ConfigError::must_be("angle_rad", "a finite angle", angle_rad));
+        }
+        if !self.parts.robot.limits.turns_in_place() {
+            let reason =
+                "cannot be turned by: the robot does not turn in place (`turning_radius_m`)";
+            return Err(ConfigError::new("angle_rad", reason));
         }
         self.begin(Motion::Turn(angle_rad), allowance_s)
     }

@@ -19,9 +19,14 @@ use crate::geometry::{Point, Polyline, Pose, Segment, wrap_angle};
 use crate::map::DistanceField;
 use crate::navigate::watch::RestOfRoute;
 use crate::robot::Robot;
+use arrayvec::ArrayVec;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 use std::f64::consts::{FRAC_PI_6, TAU};
+
+/// Radius of the arcs of a robot that does not turn in place, in smallest turning radii: the rest
+/// is for steering.
+const ARC_RADIUS: f64 = 1.05;
 
 /// Number of headings of the search.
 const HEADINGS: i32 = 36;
@@ -111,7 +116,7 @@ impl TightPlace<'_> {
             motions.extend([turn, drive]);
             pose = after(facing_leg, drive);
             if let Some(place) = place.map(|(_, place)| place).or(self.leads_on(pose, stations)) {
-                return Some(facing(motions, pose, place));
+                return Some(self.facing(motions, pose, place));
             }
         }
         None
@@ -131,7 +136,7 @@ impl TightPlace<'_> {
             if index > 0
                 && let Some(place) = self.leads_on(pose, stations)
             {
-                return Some(facing(merged(&nodes, index), pose, place));
+                return Some(self.facing(merged(&nodes, index), pose, place));
             }
             if closed.len() > MOST_NODES {
                 break;
@@ -154,7 +159,7 @@ impl TightPlace<'_> {
             }
         }
         let (index, place) = turning_place?;
-        Some(facing(merged(&nodes, index), nodes[index].pose, place))
+        Some(self.facing(merged(&nodes, index), nodes[index].pose, place))
     }
 
     pub(super) fn radius_m(&self) -> f64 {
@@ -205,11 +210,31 @@ impl TightPlace<'_> {
         }
         let clearance = self.obstacles.clearance();
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
+        let faces = |station: Point| {
+            self.robot.limits.turns_in_place() || pose.bearing_to(station).abs() <= ASIDE_RAD
+        };
         let is_next = |station: &&Point| {
             station.distance(point) <= self.size_m()
+                && faces(**station)
                 && clearance.is_clear(Segment::new(point, **station), inscribed_m)
         };
         stations.iter().rev().find(is_next).map(|&station| Place::OnTheWay(station))
+    }
+
+    /// Motions to a pose with space to turn, followed by a rotation towards the point that they
+    /// lead to, if the robot turns in place.
+    fn facing(&self, mut motions: Vec<Motion>, pose: Pose, place: Place) -> Vec<Motion> {
+        let Place::OnTheWay(station) = place else { return motions };
+        if !self.robot.limits.turns_in_place() {
+            return motions;
+        }
+        let bearing_rad = pose.bearing_to(station);
+        if let Some(Motion::Turn(turn_rad)) = motions.last_mut() {
+            *turn_rad = wrap_angle(*turn_rad + bearing_rad);
+        } else {
+            motions.push(Motion::Turn(bearing_rad));
+        }
+        motions
     }
 
     /// True if the robot does not face along its route, and has no space to turn there.
@@ -221,30 +246,36 @@ impl TightPlace<'_> {
 
     fn motions(&self) -> impl Iterator<Item = (Motion, i32)> {
         let step_m = STEP_SQUARES * self.square_m();
-        let back = (self.robot.limits.v_min_mps < 0.0).then_some((Motion::Drive(-step_m), 0));
-        let turns = [(Motion::Turn(STEP_RAD), 1), (Motion::Turn(-STEP_RAD), -1)];
+        let limits = &self.robot.limits;
+        let back = (limits.v_min_mps < 0.0).then_some(-step_m);
+        let turn = |turned: i32| (Motion::Turn(STEP_RAD * f64::from(turned)), turned);
+        let arc_m = STEP_RAD * limits.turning_radius_m * ARC_RADIUS;
+        let arc_m = arc_m.max(step_m);
+        let arc = move |length_m: f64, turned: i32| {
+            let length_m = arc_m.copysign(length_m);
+            (Motion::Arc(length_m, STEP_RAD * f64::from(turned)), turned)
+        };
+        let turns: ArrayVec<_, 4> = if limits.turns_in_place() {
+            [turn(1), turn(-1)].into_iter().collect()
+        } else {
+            let ways = [step_m].into_iter().chain(back);
+            ways.flat_map(|length_m| [arc(length_m, 1), arc(length_m, -1)]).collect()
+        };
+        let back = back.map(|back_m| (Motion::Drive(back_m), 0));
         [(Motion::Drive(step_m), 0)].into_iter().chain(turns).chain(back)
     }
 
     pub(super) fn is_free(&self, pose: Pose, motion: Motion) -> bool {
-        let footprint = &self.robot.footprint;
-        match motion {
-            Motion::Turn(turn_rad) => {
-                let turn = [pose.theta, turn_rad];
-                footprint.keeps_room_turning(pose.point(), turn, self.room_m, self.obstacles)
-            }
-            Motion::Drive(length_m) => {
-                footprint.keeps_room_driving(pose, length_m, self.room_m, self.obstacles)
-            }
-            Motion::Wait(_) => true,
-        }
+        motion.keeps_room(self.robot, pose, self.room_m, self.obstacles)
     }
 
     fn time_s(&self, motion: Motion) -> f64 {
         let limits = &self.robot.limits;
         match motion {
             Motion::Turn(turn_rad) => turn_rad.abs() / (SPEED_SHARE * limits.omega_max_radps),
-            Motion::Drive(length_m) => length_m.abs() / (SPEED_SHARE * limits.v_max_mps),
+            Motion::Drive(length_m) | Motion::Arc(length_m, _) => {
+                length_m.abs() / (SPEED_SHARE * limits.v_max_mps)
+            }
             Motion::Wait(time_s) => time_s,
         }
     }
@@ -272,28 +303,8 @@ impl TightPlace<'_> {
     }
 }
 
-/// Motions to a pose with space to turn, followed by a rotation towards the point that they lead
-/// to.
-fn facing(mut motions: Vec<Motion>, pose: Pose, place: Place) -> Vec<Motion> {
-    let Place::OnTheWay(station) = place else { return motions };
-    let bearing_rad = pose.bearing_to(station);
-    if let Some(Motion::Turn(turn_rad)) = motions.last_mut() {
-        *turn_rad = wrap_angle(*turn_rad + bearing_rad);
-    } else {
-        motions.push(Motion::Turn(bearing_rad));
-    }
-    motions
-}
-
 pub(super) fn after(pose: Pose, motion: Motion) -> Pose {
-    match motion {
-        Motion::Turn(turn_rad) => Pose::new(pose.x, pose.y, pose.theta + turn_rad),
-        Motion::Drive(length_m) => {
-            let (sin, cos) = libm::sincos(pose.theta);
-            Pose { x: pose.x + length_m * cos, y: pose.y + length_m * sin, ..pose }
-        }
-        Motion::Wait(_) => pose,
-    }
+    motion.after_from(pose)
 }
 
 /// The motions to a node, in order; successive ones of the same kind and direction are merged.
@@ -302,6 +313,12 @@ fn merged(nodes: &[Node], last: usize) -> Vec<Motion> {
     let mut index = last;
     while let Some((from, motion)) = nodes[index].by {
         match (motions.last_mut(), motion) {
+            (Some(Motion::Arc(all_m, all_rad)), Motion::Arc(one_m, one_rad))
+                if *all_m * one_m > 0.0 && *all_rad * one_rad > 0.0 =>
+            {
+                *all_m += one_m;
+                *all_rad += one_rad;
+            }
             (Some(Motion::Turn(all)), Motion::Turn(one))
             | (Some(Motion::Drive(all)), Motion::Drive(one))
                 if *all * one > 0.0 =>

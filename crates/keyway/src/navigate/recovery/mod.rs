@@ -188,11 +188,17 @@ pub(super) struct OnTheSpot<'a> {
 }
 
 impl OnTheSpot<'_> {
+    /// A robot that cannot turn in place drives straight to a point this much aside \[rad\].
+    const NEARLY_RAD: f64 = 0.5;
+
     /// Smallest useful rotation \[rad\].
     const LEAST_TURN_RAD: f64 = 0.1;
 
     /// A rotation by an angle, in the shorter direction that has space.
     pub(super) fn turn(&self, pose: Pose, left_rad: f64) -> Option<f64> {
+        if !self.robot.limits.turns_in_place() {
+            return None;
+        }
         let left_rad = wrap_angle(left_rad);
         let other_way_rad = left_rad - TAU.copysign(left_rad);
         [left_rad, other_way_rad].into_iter().find(|&turn_rad| {
@@ -227,7 +233,10 @@ impl OnTheSpot<'_> {
             let backwards = can_reverse.then_some((wrap_angle(ahead_rad + PI), -length_m));
             let mut ways = backwards.into_iter().chain([(ahead_rad, length_m)]);
             ways.find_map(|(turn_rad, length_m)| {
-                let turn_rad = self.turn(pose, turn_rad)?;
+                let turn_rad = match self.turn(pose, turn_rad) {
+                    None if wrap_angle(turn_rad).abs() <= Self::NEARLY_RAD => 0.0,
+                    turn_rad => turn_rad?,
+                };
                 let facing = Pose::new(pose.x, pose.y, pose.theta + turn_rad);
                 let (footprint, room_m) = (&self.robot.footprint, self.room_m);
                 let is_free =

@@ -21,6 +21,9 @@ pub(in crate::navigate) enum Motion {
     Turn(f64),
     /// Straight drive, negative backwards \[m\].
     Drive(f64),
+    /// Arc of a robot that does not turn in place: the length, negative backwards \[m\], and the
+    /// angle, positive to the left \[rad\].
+    Arc(f64, f64),
     /// Pause \[s\].
     Wait(f64),
 }
@@ -137,21 +140,23 @@ impl MotionUnderWay {
             Motion::Wait(_) => Velocity::ZERO,
             Motion::Turn(left_rad) => {
                 let turn = [pose.theta, left_rad];
-                if !footprint.keeps_room_turning(pose.point(), turn, room_m, obstacles) {
+                let turns = limits.turns_in_place();
+                if !turns || !footprint.keeps_room_turning(pose.point(), turn, room_m, obstacles) {
                     return MotionStep::Refused;
                 }
                 let most = share() * limits.omega_max_radps;
                 let stops = limits.stoppable_radps(velocity.omega, left_rad.abs(), cycle_s);
                 Velocity::new(0.0, stops.min(most).copysign(left_rad))
             }
-            Motion::Drive(left_m) => {
-                if !footprint.keeps_room_driving(pose, left_m, room_m, obstacles) {
+            Motion::Drive(left_m) | Motion::Arc(left_m, _) => {
+                if !self.left.keeps_room(robot, pose, room_m, obstacles) {
                     return MotionStep::Refused;
                 }
                 let fastest = if left_m < 0.0 { -limits.v_min_mps } else { limits.v_max_mps };
                 let most = fastest.min(share() * limits.v_max_mps).min(seen_mps(robot, left_m));
                 let stops = limits.stoppable_mps(velocity.v, left_m.abs(), cycle_s);
-                Velocity::new(stops.min(most).copysign(left_m), 0.0)
+                let v = stops.min(most).copysign(left_m);
+                Velocity::new(v, v * self.left.curvature_radpm())
             }
         };
         MotionStep::Moving(command)
@@ -196,16 +201,67 @@ fn is_wide(
             let turn = [pose.theta, ahead_rad.copysign(left_rad)];
             footprint.keeps_room_turning(pose.point(), turn, margin_m, obstacles)
         }
-        Motion::Drive(left_m) => {
+        Motion::Drive(left_m) | Motion::Arc(left_m, _) => {
             let ahead_m = stops_within(limits.v_max_mps, limits.deceleration_mps2);
-            let room_m = margin_m + BESIDE_DRIVES_M;
-            footprint.keeps_room_driving(pose, ahead_m.copysign(left_m), room_m, obstacles)
+            let ahead_m = ahead_m.copysign(left_m);
+            let ahead = match motion {
+                Motion::Arc(..) => Motion::Arc(ahead_m, ahead_m * motion.curvature_radpm()),
+                _ => Motion::Drive(ahead_m),
+            };
+            ahead.keeps_room(robot, pose, margin_m + BESIDE_DRIVES_M, obstacles)
         }
         Motion::Wait(_) => false,
     }
 }
 
 impl Motion {
+    /// True if the footprint certainly keeps a clearance \[m\] during the motion, and the robot can
+    /// make it.
+    pub(in crate::navigate) fn keeps_room(
+        self,
+        robot: &Robot,
+        pose: Pose,
+        room_m: f64,
+        obstacles: &DistanceField,
+    ) -> bool {
+        let footprint = &robot.footprint;
+        match self {
+            Self::Turn(turn_rad) => {
+                let turn = [pose.theta, turn_rad];
+                (robot.limits.turns_in_place() || turn_rad == 0.0)
+                    && footprint.keeps_room_turning(pose.point(), turn, room_m, obstacles)
+            }
+            Self::Drive(length_m) => {
+                footprint.keeps_room_driving(pose, length_m, room_m, obstacles)
+            }
+            Self::Arc(length_m, turn_rad) => {
+                footprint.keeps_room_on_arc(pose, [length_m, turn_rad], room_m, obstacles)
+            }
+            Self::Wait(_) => true,
+        }
+    }
+
+    /// Turn per length driven; 0 for a motion without one \[rad/m\].
+    fn curvature_radpm(self) -> f64 {
+        match self {
+            Self::Arc(length_m, turn_rad) if length_m != 0.0 => turn_rad / length_m,
+            _ => 0.0,
+        }
+    }
+
+    /// Pose after the motion.
+    pub(in crate::navigate) fn after_from(self, pose: Pose) -> Pose {
+        match self {
+            Self::Turn(turn_rad) => Pose::new(pose.x, pose.y, pose.theta + turn_rad),
+            Self::Drive(length_m) => {
+                let (sin, cos) = libm::sincos(pose.theta);
+                Pose { x: pose.x + length_m * cos, y: pose.y + length_m * sin, ..pose }
+            }
+            Self::Arc(length_m, turn_rad) => pose.after_arc(Velocity::new(length_m, turn_rad), 1.0),
+            Self::Wait(_) => pose,
+        }
+    }
+
     /// The rest after the robot has moved from one pose to another.
     fn after(self, from: Pose, to: Pose, elapsed_s: f64) -> Self {
         match self {
@@ -215,13 +271,22 @@ impl Motion {
                 let moved = to.point() - from.point();
                 Self::Drive(left_m - (moved.x * cos + moved.y * sin))
             }
+            Self::Arc(left_m, left_rad) => {
+                let turned_rad = wrap_angle(to.theta - from.theta);
+                // The chord of a short arc lies halfway between both headings.
+                let (sin, cos) = libm::sincos(from.theta + 0.5 * turned_rad);
+                let moved = to.point() - from.point();
+                Self::Arc(left_m - (moved.x * cos + moved.y * sin), left_rad - turned_rad)
+            }
             Self::Wait(left_s) => Self::Wait((left_s - elapsed_s).max(0.0)),
         }
     }
 
     fn size(self) -> f64 {
         match self {
-            Self::Turn(left) | Self::Drive(left) | Self::Wait(left) => left.abs(),
+            Self::Turn(left) | Self::Drive(left) | Self::Arc(left, _) | Self::Wait(left) => {
+                left.abs()
+            }
         }
     }
 
@@ -231,7 +296,7 @@ impl Motion {
         const NOTHING: f64 = 2e-3;
         let least = match self {
             Self::Turn(_) => least.omega,
-            Self::Drive(_) => least.v,
+            Self::Drive(_) | Self::Arc(..) => least.v,
             Self::Wait(_) => 0.0,
         };
         NOTHING.max(0.6 * least * least_s)

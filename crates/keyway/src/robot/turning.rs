@@ -1,0 +1,125 @@
+//! The turning radius: the velocities that the wheels of a robot can have.
+//!
+//! A robot with a differential drive turns in place. A car-like one cannot: it needs a speed v of
+//! at least r |omega|, with its smallest turning radius r. Every velocity that the robot reaches is
+//! one of these, and from one to the next the radius never becomes smaller: between two such
+//! velocities of the same direction of travel, all others are as well, and the robot stops before it
+//! changes that direction.
+
+use super::Limits;
+use crate::ConfigError;
+use crate::geometry::Velocity;
+
+impl Limits {
+    /// True for a robot that can turn in place.
+    pub fn turns_in_place(&self) -> bool {
+        self.turning_radius_m == 0.0
+    }
+
+    /// The largest turn rate at a speed \[rad/s\].
+    pub fn turn_rate_at(&self, v_mps: f64) -> f64 {
+        if self.turns_in_place() {
+            return self.omega_max_radps;
+        }
+        self.omega_max_radps.min(v_mps.abs() / self.turning_radius_m)
+    }
+
+    /// A velocity at the same speed that turns no more than the robot can.
+    pub(super) fn steered(&self, velocity: Velocity) -> Velocity {
+        let most_radps = self.turn_rate_at(velocity.v);
+        Velocity::new(velocity.v, velocity.omega.clamp(-most_radps, most_radps))
+    }
+
+    /// The velocity that is reached instead of one that the wheels cannot have.
+    pub(super) fn steered_from(&self, from: Velocity, to: Velocity) -> Velocity {
+        if self.turns_in_place() {
+            return to;
+        }
+        let reverses = from.v * to.v < 0.0;
+        if reverses { Velocity::ZERO } else { self.steered(to) }
+    }
+
+    /// Refuses jerk limits of a car-like robot: the mean of a velocity ahead and one back is none
+    /// that its wheels can have.
+    pub(super) fn check_turning(&self) -> Result<(), ConfigError> {
+        let limited = [
+            ("limits.jerk_mps3", self.jerk_mps3),
+            ("limits.angular_jerk_radps3", self.angular_jerk_radps3),
+        ];
+        let limited = limited.into_iter().find_map(|(field, jerk)| Some((field, jerk?)));
+        match limited {
+            Some((field, jerk)) if !self.turns_in_place() => {
+                let expected = "left out for a robot with limits.turning_radius_m";
+                Err(ConfigError::must_be(field, expected, jerk))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::Robot;
+    use proptest::prelude::*;
+
+    fn car() -> Limits {
+        Limits { turning_radius_m: 0.6, v_min_mps: -0.5, ..Robot::jackal().limits }
+    }
+
+    #[test]
+    fn a_car_turns_only_while_it_drives() {
+        let limits = car();
+        let clamped = |v, omega| limits.clamped(Velocity::new(v, omega));
+        assert_eq!(clamped(0.0, 2.0), Velocity::ZERO);
+        assert_eq!(clamped(0.3, 2.0), Velocity::new(0.3, 0.5));
+        assert_eq!(clamped(-0.3, -2.0), Velocity::new(-0.3, -0.5));
+        assert_eq!(clamped(2.0, 9.0), Velocity::new(2.0, 3.0), "3 rad/s at most");
+        assert_eq!(clamped(0.3, 0.2), Velocity::new(0.3, 0.2));
+        let differential = Robot::jackal().limits;
+        assert_eq!(differential.clamped(Velocity::new(0.0, 2.0)), Velocity::new(0.0, 2.0));
+    }
+
+    #[test]
+    fn it_stops_before_it_changes_its_direction() {
+        let limits = car();
+        let from = Velocity::new(0.1, 0.1);
+        let reached = limits.reached(from, Velocity::new(-0.5, 0.5), 0.1);
+        assert_eq!(reached, Velocity::ZERO);
+        assert!(limits.reached(reached, Velocity::new(-0.5, 0.5), 0.1).v < 0.0);
+    }
+
+    #[test]
+    fn jerk_limits_of_a_car_are_refused() {
+        let mut robot = Robot { limits: car(), ..Robot::jackal() };
+        assert_eq!(robot.validate(), Ok(()));
+        robot.limits.jerk_mps3 = Some(50.0);
+        assert_eq!(robot.validate().unwrap_err().path, "limits.jerk_mps3");
+        robot.limits.turning_radius_m = -0.1;
+        assert_eq!(robot.validate().unwrap_err().path, "limits.turning_radius_m");
+    }
+
+    proptest! {
+        /// On the whole ramp from one reached velocity to the next, and while it brakes.
+        #[test]
+        fn no_motion_is_tighter_than_the_turning_radius(
+            commands in proptest::collection::vec((-2.0..3.0_f64, -4.0..4.0_f64), 1..20),
+            cycle_s in 0.01..0.5_f64,
+        ) {
+            let limits = car();
+            let is_wide = |it: Velocity| {
+                it.omega.abs() <= it.v.abs() / limits.turning_radius_m + 1e-9
+            };
+            let mut velocity = Velocity::ZERO;
+            for (v, omega) in commands {
+                let to = limits.reached(velocity, Velocity::new(v, omega), cycle_s);
+                let stops = limits.braked(to, cycle_s);
+                for part in [0.0, 0.2, 0.5, 0.9, 1.0] {
+                    prop_assert!(is_wide(velocity.lerp(to, part)), "{:?} {:?}", velocity, to);
+                    prop_assert!(is_wide(to.lerp(stops, part)), "{:?} {:?}", to, stops);
+                }
+                velocity = to;
+            }
+        }
+    }
+}
