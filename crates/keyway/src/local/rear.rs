@@ -165,6 +165,17 @@ pub(super) struct Seen<'a> {
 }
 
 impl Seen<'_> {
+    /// Position of the rearmost point along the robot's axis, negative behind its centre \[m\].
+    pub(super) fn rearmost_m(&self) -> f64 {
+        self.points.iter().map(|point| point.x).fold(0.0, f64::min)
+    }
+
+    /// True if a position is on those cells.
+    #[inline]
+    pub(super) fn holds_point(&self, at: Point) -> bool {
+        self.cells.get(cell_of(at, self.cell_m))
+    }
+
     /// True if all points are on those cells. The robot is at `at`, from the lower-left corner of
     /// the grid \[m\], and faces `ahead`, a direction of length 1 on the grid.
     pub(super) fn holds(&self, at: Point, ahead: Point) -> bool {

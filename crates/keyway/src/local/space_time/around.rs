@@ -89,7 +89,8 @@ impl SpaceTime {
         };
         let limits = &self.robot.limits;
         let can_reverse = self.config.backwards && limits.v_min_mps < 0.0;
-        let driven = Driven { limits, can_reverse };
+        let seen = scene.seen.behind.map(|cells| self.rear.over(cells, frame));
+        let driven = Driven { limits, can_reverse, seen };
         let room_m = |place: Point| room.of_point(place);
         let (sin, cos) = libm::sincos(scene.pose.theta - frame.origin().theta);
         let from = (robot, Point::new(cos, sin));

@@ -24,6 +24,7 @@ use super::pose_times::{
     Facing, HEADING_RAD, HEADINGS, MotionTicks, PoseTimes, STEP_TICKS, WayEnd,
 };
 use crate::geometry::Point;
+use crate::local::rear::Seen;
 use crate::robot::Limits;
 use std::f64::consts::TAU;
 
@@ -91,6 +92,8 @@ impl LastTurn {
 pub(super) struct Driven<'a> {
     pub(super) limits: &'a Limits,
     pub(super) can_reverse: bool,
+    /// Cells over which it may drive backwards; `None` if it sees all around.
+    pub(super) seen: Option<Seen<'a>>,
 }
 
 impl PoseCost {
@@ -123,6 +126,9 @@ impl PoseCost {
         let within_m = 2.0 * ground.turning_m + loops * radius_m;
         near.collect(lattice, &self.way, within_m, motions.longest_step());
         fitting.begin(near);
+        if radius_m > 0.0 {
+            times.look_behind(near, driven.seen);
+        }
         times.fill((near, fitting), (room_m, ground), &motions, end);
         self.most_s = f64::from(times.longest()) * *tick_s;
         self.is_active = true;

@@ -43,7 +43,8 @@ fn pose_cost(robot: &Robot, from: Point, end: WayEnd) -> PoseCost {
     let mut blocked = BlockedHeadings::default();
     blocked.fit(&robot.footprint, 0.0, CELL_M);
     let ground = Ground { obstacles: &field, blocked: &blocked, inscribed_m: 0.2, turning_m: 0.45 };
-    let driven = Driven { limits: &robot.limits, can_reverse: robot.limits.v_min_mps < 0.0 };
+    let driven =
+        Driven { limits: &robot.limits, can_reverse: robot.limits.v_min_mps < 0.0, seen: None };
     let mut pose_cost = PoseCost::default();
     pose_cost.fill((lattice, &cost_to_go), room_m, (&ground, driven), (from, AHEAD), &end);
     pose_cost

@@ -10,6 +10,7 @@
 use super::fitting::{Fitting, Ground, Sectors};
 use super::near::Near;
 use crate::geometry::{Point, wrap_angle};
+use crate::local::rear::Seen;
 use crate::robot::Limits;
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::ops::Range;
@@ -27,6 +28,8 @@ pub(super) struct PoseTimes {
     along: [Done; KINDS],
     /// The poses at the end of the path, by their times.
     ends: Vec<(u16, u32, Sectors)>,
+    /// The headings at each place at which a car-like robot may arrive backwards.
+    behind: Vec<Sectors>,
 }
 
 /// The end of the path, and the required heading there.
@@ -113,6 +116,25 @@ impl PoseTimes {
             fitting.free(number) != 0
         });
         self.grow_poses(near, fitting, motions, end);
+    }
+
+    /// Notes where a car-like robot may drive backwards: its rear stays on observed ground. One
+    /// that turns in place can look there first.
+    pub(super) fn look_behind(&mut self, near: &Near, seen: Option<Seen<'_>>) {
+        self.behind.clear();
+        self.behind.resize(near.place_count(), Sectors::MAX);
+        let Some(seen) = seen else { return };
+        let rears: [Point; HEADINGS] = std::array::from_fn(|heading| {
+            let (sin, cos) = libm::sincos(HEADING_RAD * heading as f64);
+            Point::new(cos, sin) * seen.rearmost_m()
+        });
+        for &place in near.places() {
+            let (x, y) = near.point(place as usize);
+            let at = near.lattice.position(x, y);
+            let is_seen = |heading: &usize| seen.holds_point(at + rears[*heading]);
+            self.behind[place as usize] =
+                (0..HEADINGS).filter(is_seen).fold(0, |headings, heading| headings | 1 << heading);
+        }
     }
 
     /// Time from a place, in any direction; `None` if no path exists.
@@ -271,6 +293,9 @@ impl PoseTimes {
             for index in self.along[kind].before(now, ticks) {
                 let Pose { place, heading, direction } = self.along[kind].get(index);
                 let own = 1 << heading;
+                if !is_ahead && self.behind[place] & own == 0 {
+                    continue;
+                }
                 let headings = if turns { sides(own) } else { own };
                 self.reach(near, place.wrapping_add_signed(offsets[direction]), headings, now);
             }

@@ -114,6 +114,7 @@ fn times_are_those_of_the_relaxation_of_all_motions() {
             _ => Facing::On(-2.0),
         };
         let end = WayEnd { at: middle, facing };
+        times.look_behind(&near, None);
         times.grow_poses(&near, &fitting, &motions, &end);
         let expected = relaxed(&near, &fitting, &motions, &end);
         assert!(expected.as_flattened().iter().any(|&ticks| ticks != NEVER), "round {round}");
