@@ -10,9 +10,9 @@ use keyway::robot::Robot;
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
 
 /// A robot with this turning radius \[m\], which drives backwards, too.
-fn car(base: Robot, turning_radius_m: f64) -> Robot {
+fn car(base: Robot, min_turning_radius_m: f64) -> Robot {
     let mut robot = base;
-    robot.limits.turning_radius_m = turning_radius_m;
+    robot.limits.min_turning_radius_m = min_turning_radius_m;
     robot.limits.v_min_mps = -0.6 * robot.limits.v_max_mps;
     robot
 }
@@ -33,7 +33,7 @@ fn episode(robot: &Robot, goal_rad: Option<f64>) -> Episode {
 
 /// Checks that no velocity turns more tightly than the robot can.
 fn check(robot: &Robot, report: &RobotReport) {
-    let radius_m = robot.limits.turning_radius_m;
+    let radius_m = robot.limits.min_turning_radius_m;
     let rows = report.trajectory.as_ref().unwrap();
     assert!(rows.len() > 10);
     for [t_s, _, _, _, v, omega] in rows {
@@ -54,7 +54,8 @@ fn they_reach_their_goals_on_arcs() {
     }
 }
 
-/// At the goal there is no last turn in place: the robot arrives as it has to, or drives to and fro.
+/// At the goal there is no last turn in place: the robot arrives as it has to, or drives to and
+/// fro.
 #[test]
 fn they_arrive_with_a_heading() {
     for robot in cars() {

@@ -2,8 +2,8 @@
 //!
 //! A global search finds a route, and a smoother makes it short and safe. A local planner, which
 //! searches space-time trajectories, follows it among unmapped obstacles. This is the default
-//! stack, `keyway`. Others, such as dynamic window approaches, are available by name. For now a
-//! robot is a differential drive with up to eight lidars.
+//! stack, `keyway`. Others, such as dynamic window approaches, are available by name. A robot has a
+//! differential drive or car-like steering, and up to eight lidars.
 //!
 //! Data flows one way; each stage is a module that depends only on the earlier ones:
 //!

@@ -142,7 +142,7 @@ fn any_robot() -> impl Strategy<Value = Robot> {
                 v_min_mps: -speeds.2 * speeds.0,
                 v_max_mps: speeds.0,
                 omega_max_radps: speeds.1,
-                turning_radius_m: 0.0,
+                min_turning_radius_m: 0.0,
                 acceleration_mps2: rates.0,
                 deceleration_mps2: rates.1,
                 angular_acceleration_radps2: rates.2,

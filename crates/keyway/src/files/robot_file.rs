@@ -43,8 +43,8 @@ pub struct LimitsPart {
     pub v_max_mps: Option<f64>,
     /// See [`Limits::omega_max_radps`].
     pub omega_max_radps: Option<f64>,
-    /// See [`Limits::turning_radius_m`].
-    pub turning_radius_m: Option<f64>,
+    /// See [`Limits::min_turning_radius_m`].
+    pub min_turning_radius_m: Option<f64>,
     /// See [`Limits::acceleration_mps2`].
     pub acceleration_mps2: Option<f64>,
     /// See [`Limits::deceleration_mps2`].
@@ -112,7 +112,7 @@ impl LimitsPart {
         Limits {
             v_min_mps: self.v_min_mps.unwrap_or(base.v_min_mps),
             omega_max_radps: self.omega_max_radps.unwrap_or(base.omega_max_radps),
-            turning_radius_m: self.turning_radius_m.unwrap_or(base.turning_radius_m),
+            min_turning_radius_m: self.min_turning_radius_m.unwrap_or(base.min_turning_radius_m),
             acceleration_mps2: self.acceleration_mps2.unwrap_or(base.acceleration_mps2),
             deceleration_mps2: braking(
                 self.deceleration_mps2,

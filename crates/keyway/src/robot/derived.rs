@@ -41,7 +41,7 @@ impl Robot {
                 v_min_mps: 0.0,
                 v_max_mps,
                 omega_max_radps,
-                turning_radius_m: 0.0,
+                min_turning_radius_m: 0.0,
                 acceleration_mps2,
                 deceleration_mps2: acceleration_mps2,
                 angular_acceleration_radps2,

@@ -1,9 +1,10 @@
 //! The drive model: motion, braking and stopping of a robot.
 //!
 //! A differential drive turns in place; a car-like one has a smallest turning radius
-//! (`turning.rs`). The model gives the velocity that a robot reaches in a cycle, its braking, the test for standstill,
-//! and its motion until it stops. Dynamic windows, the space-time search, the stop rule and the
-//! recovery motions integrate (v, omega) with formulas of their own.
+//! (`turning.rs`). The model gives the velocity that a robot reaches in a cycle, its braking, the
+//! test for standstill, and its motion until it stops. Dynamic windows, the space-time search, the
+//! stop rule and the recovery motions integrate (v, omega) with formulas of their own, and ask here
+//! which velocities there are.
 
 use super::{Limits, Robot};
 use crate::ConfigError;

@@ -60,7 +60,7 @@ pub struct Limits {
     /// Smallest turning radius \[m\], up to 100: that of a car-like robot, which turns only while
     /// it drives. Default: 0, for a robot that turns in place.
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub turning_radius_m: f64,
+    pub min_turning_radius_m: f64,
     /// Acceleration \[m/s²\], from 0.0001 to 10000 like those below.
     pub acceleration_mps2: f64,
     /// Deceleration \[m/s²\], positive; the robot stops from full speed within a minute.
@@ -110,8 +110,8 @@ impl Robot {
             ),
             ("limits.omega_max_radps", omega_max_radps, speeds, speed),
             (
-                "limits.turning_radius_m",
-                self.limits.turning_radius_m,
+                "limits.min_turning_radius_m",
+                self.limits.min_turning_radius_m,
                 0.0..=100.0,
                 "a length from 0 to 100 m",
             ),

@@ -2,9 +2,8 @@
 //!
 //! A robot with a differential drive turns in place. A car-like one cannot: it needs a speed v of
 //! at least r |omega|, with its smallest turning radius r. Every velocity that the robot reaches is
-//! one of these, and from one to the next the radius never becomes smaller: between two such
-//! velocities of the same direction of travel, all others are as well, and the robot stops before it
-//! changes that direction.
+//! one of these. Between two of them with the same direction of travel all others are as well, and
+//! the robot stops before it changes that direction: it never turns more tightly.
 
 use super::Limits;
 use crate::ConfigError;
@@ -13,7 +12,7 @@ use crate::geometry::Velocity;
 impl Limits {
     /// True for a robot that can turn in place.
     pub fn turns_in_place(&self) -> bool {
-        self.turning_radius_m == 0.0
+        self.min_turning_radius_m == 0.0
     }
 
     /// The largest turn rate at a speed \[rad/s\].
@@ -21,7 +20,7 @@ impl Limits {
         if self.turns_in_place() {
             return self.omega_max_radps;
         }
-        self.omega_max_radps.min(v_mps.abs() / self.turning_radius_m)
+        self.omega_max_radps.min(v_mps.abs() / self.min_turning_radius_m)
     }
 
     /// A velocity at the same speed that turns no more than the robot can.
@@ -49,7 +48,7 @@ impl Limits {
         let limited = limited.into_iter().find_map(|(field, jerk)| Some((field, jerk?)));
         match limited {
             Some((field, jerk)) if !self.turns_in_place() => {
-                let expected = "left out for a robot with limits.turning_radius_m";
+                let expected = "left out for a robot with limits.min_turning_radius_m";
                 Err(ConfigError::must_be(field, expected, jerk))
             }
             _ => Ok(()),
@@ -64,7 +63,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn car() -> Limits {
-        Limits { turning_radius_m: 0.6, v_min_mps: -0.5, ..Robot::jackal().limits }
+        Limits { min_turning_radius_m: 0.6, v_min_mps: -0.5, ..Robot::jackal().limits }
     }
 
     #[test]
@@ -95,8 +94,8 @@ mod tests {
         assert_eq!(robot.validate(), Ok(()));
         robot.limits.jerk_mps3 = Some(50.0);
         assert_eq!(robot.validate().unwrap_err().path, "limits.jerk_mps3");
-        robot.limits.turning_radius_m = -0.1;
-        assert_eq!(robot.validate().unwrap_err().path, "limits.turning_radius_m");
+        robot.limits.min_turning_radius_m = -0.1;
+        assert_eq!(robot.validate().unwrap_err().path, "limits.min_turning_radius_m");
     }
 
     proptest! {
@@ -108,7 +107,7 @@ mod tests {
         ) {
             let limits = car();
             let is_wide = |it: Velocity| {
-                it.omega.abs() <= it.v.abs() / limits.turning_radius_m + 1e-9
+                it.omega.abs() <= it.v.abs() / limits.min_turning_radius_m + 1e-9
             };
             let mut velocity = Velocity::ZERO;
             for (v, omega) in commands {

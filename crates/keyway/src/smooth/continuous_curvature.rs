@@ -59,10 +59,12 @@ pub struct ContinuousCurvatureConfig {
 
 impl ContinuousCurvatureConfig {
     /// The limit for a robot that need not slow down below `speed_mps` on curves, turning at its
-    /// largest turn rate. Its largest speed is used if that is less than `speed_mps`.
+    /// largest turn rate, and that has no larger turning radius. Its largest speed is used if that
+    /// is less than `speed_mps`.
     pub fn for_robot(robot: &Robot, speed_mps: f64) -> Self {
         let speed_mps = speed_mps.min(robot.limits.v_max_mps);
-        Self { min_turning_radius_m: speed_mps / robot.limits.omega_max_radps }
+        let slower_m = speed_mps / robot.limits.omega_max_radps;
+        Self { min_turning_radius_m: slower_m.max(robot.limits.min_turning_radius_m) }
     }
 }
 

@@ -8,7 +8,8 @@
 //!
 //! At a corner, where the heading jumps, the robot stops and turns in place, as fast as turn
 //! rate, angular acceleration and deceleration allow. A reversal is a turn by pi: nothing is driven
-//! backwards.
+//! backwards. A turning radius is not considered: a car-like robot that cannot follow the path
+//! takes longer, or leaves it.
 //!
 //! # Accuracy
 //! The time is a lower bound for any run along this path under these limits: angular acceleration

@@ -12,7 +12,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// Speeds and turn rates each on their own: not all of their pairs are those of a car-like robot.
+    /// Speeds and turn rates each on their own: a car-like robot does not have all of their pairs.
     pub(super) fn of(robot: &Robot, from: Velocity, remaining_m: f64, backwards: bool) -> Self {
         let Robot { limits, cycle_s, .. } = robot;
         let stoppable_mps = limits.stoppable_mps(from.v, remaining_m, *cycle_s);

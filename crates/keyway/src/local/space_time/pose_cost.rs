@@ -11,10 +11,9 @@
 //! on the same lattice, so that both contain the same discretization error.
 //!
 //! # Cost
-//! None for round robots, nor if the robot can turn everywhere along its path: in place or, car-like,
-//! as gently as the path bends. Otherwise linear
-//! in the places near that path, with 32 headings each; headings are checked only at places that
-//! the search reaches.
+//! None for round robots that turn in place, nor if the robot can turn everywhere along its path:
+//! in place or, car-like, as gently as the path bends. Otherwise linear in the places near that
+//! path, with 32 headings each; headings are checked only at places that the search reaches.
 
 use super::cost_to_go::CostToGo;
 use super::fitting::{Fitting, Ground};
@@ -59,21 +58,21 @@ impl LastTurn {
     const OFF_RAD: f64 = 0.1;
 
     fn new(end: &WayEnd, driven: Driven<'_>, spacing_m: f64) -> Option<Self> {
-        let Limits { turning_radius_m, v_max_mps, v_min_mps, acceleration_mps2, .. } =
+        let Limits { min_turning_radius_m, v_max_mps, v_min_mps, acceleration_mps2, .. } =
             *driven.limits;
         let Facing::At(facing_rad) = end.facing else { return None };
-        if turning_radius_m == 0.0 {
+        if min_turning_radius_m == 0.0 {
             return None;
         }
         let (sin, cos) = libm::sincos(facing_rad);
-        let (ahead_s, start_s) = (turning_radius_m / v_max_mps, v_max_mps / acceleration_mps2);
+        let (ahead_s, start_s) = (min_turning_radius_m / v_max_mps, v_max_mps / acceleration_mps2);
         // An arc ahead and one back turn by half of the angle each; or a whole loop.
         let (once_s, radian_s) = if driven.can_reverse {
-            (start_s, 0.5 * (ahead_s - turning_radius_m / v_min_mps))
+            (start_s, 0.5 * (ahead_s - min_turning_radius_m / v_min_mps))
         } else {
             (TAU * ahead_s, 0.0)
         };
-        let (facing, near_m) = (Point::new(cos, sin), turning_radius_m.max(2.0 * spacing_m));
+        let (facing, near_m) = (Point::new(cos, sin), min_turning_radius_m.max(2.0 * spacing_m));
         Some(Self { end: end.at, facing, near_m, once_s, radian_s })
     }
 
@@ -107,7 +106,7 @@ impl PoseCost {
         end: &WayEnd,
     ) {
         self.is_active = false;
-        let radius_m = driven.limits.turning_radius_m;
+        let radius_m = driven.limits.min_turning_radius_m;
         if radius_m == 0.0 && !ground.blocked.is_useful() {
             return;
         }

@@ -438,12 +438,12 @@ impl MotionTicks {
 
     /// Motions of a robot, in ticks of `tick_s` and steps of `step_m`.
     pub(super) fn new(limits: &Limits, can_reverse: bool, (tick_s, step_m): (f64, f64)) -> Self {
-        let Limits { v_max_mps, v_min_mps, omega_max_radps, turning_radius_m, .. } = *limits;
+        let Limits { v_max_mps, v_min_mps, omega_max_radps, min_turning_radius_m, .. } = *limits;
         let ticks = |time_s: f64| (time_s / tick_s).round().clamp(1.0, 255.0) as u16;
         let turn = ticks(HEADING_RAD / omega_max_radps);
         let slower = if can_reverse { (v_max_mps / -v_min_mps).clamp(1.0, 25.0) } else { 0.0 };
         let back = AHEAD.map(|ahead| (f64::from(ahead) * slower).round() as u16);
-        let arc_m = turning_radius_m * HEADING_RAD;
+        let arc_m = min_turning_radius_m * HEADING_RAD;
         let arc_steps = AHEAD.map(|ahead| {
             let one_m = f64::from(ahead) / STEP_TICKS * step_m;
             (arc_m / one_m).round().clamp(1.0, Self::MOST_ARC_STEPS) as u16

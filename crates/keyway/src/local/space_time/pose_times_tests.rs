@@ -75,7 +75,9 @@ fn relaxed(
                         {
                             let from = near.number(place.wrapping_add_signed(near.step(step)));
                             let Some(from) = from else { continue };
-                            headings.into_iter().for_each(|heading| lower(from, heading, ticks));
+                            for heading in headings {
+                                lower(from, heading, ticks);
+                            }
                         }
                     }
                 }
@@ -105,7 +107,7 @@ fn times_are_those_of_the_relaxation_of_all_motions() {
         let mut limits = Robot::jackal().limits;
         limits.v_min_mps = [0.0, -0.1, -0.5, -2.0][round / 4 % 4];
         limits.omega_max_radps = [0.05, 0.4, 1.5, 6.0][round / 2 % 4];
-        limits.turning_radius_m = [0.0, 0.0, 1.0, 4.0, 40.0][round % 5];
+        limits.min_turning_radius_m = [0.0, 0.0, 1.0, 4.0, 40.0][round % 5];
         let motions =
             MotionTicks::new(&limits, limits.v_min_mps < 0.0, (0.1 / limits.v_max_mps, 0.4));
         let facing = match round % 3 {

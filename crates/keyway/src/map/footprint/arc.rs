@@ -83,8 +83,8 @@ mod tests {
     }
 
     proptest! {
-        /// An arc without a turn is a straight drive, and one without a length a turn; sampled poses
-        /// of a free one are free, and those of one that is not come near to something.
+        /// An arc without a turn is a straight drive, and one without a length a turn. Sampled
+        /// poses of a free one are free, and those of one that is not come near to something.
         #[test]
         fn it_agrees_with_drives_turns_and_samples(
             x in 1.0..9.0_f64, y in 1.0..5.0_f64, theta in -3.2..3.2_f64,

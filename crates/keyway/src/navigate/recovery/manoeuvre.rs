@@ -14,29 +14,20 @@
 //!
 //! Cost: up to [`MOST_NODES`] expansions, a few microseconds each, while the robot is stationary.
 
-use super::motion::{Motion, SPEED_SHARE};
+use super::motion::Motion;
 use crate::geometry::{Point, Polyline, Pose, Segment, wrap_angle};
 use crate::map::DistanceField;
 use crate::navigate::watch::RestOfRoute;
 use crate::robot::Robot;
-use arrayvec::ArrayVec;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 use std::f64::consts::{FRAC_PI_6, TAU};
-
-/// Radius of the arcs of a robot that does not turn in place, in smallest turning radii: the rest
-/// is for steering.
-const ARC_RADIUS: f64 = 1.05;
 
 /// Number of headings of the search.
 const HEADINGS: i32 = 36;
 
 /// Angle between two headings \[rad\].
 pub(super) const STEP_RAD: f64 = TAU / HEADINGS as f64;
-
-/// Length of one straight drive, in sides of the squares in which positions count as equal: it
-/// ends in another square at any heading.
-const STEP_SQUARES: f64 = 1.5;
 
 /// Expansions after which the search gives up.
 const MOST_NODES: usize = 50_000;
@@ -244,40 +235,8 @@ impl TightPlace<'_> {
             && !self.is_free(pose, Motion::Turn(TAU))
     }
 
-    fn motions(&self) -> impl Iterator<Item = (Motion, i32)> {
-        let step_m = STEP_SQUARES * self.square_m();
-        let limits = &self.robot.limits;
-        let back = (limits.v_min_mps < 0.0).then_some(-step_m);
-        let turn = |turned: i32| (Motion::Turn(STEP_RAD * f64::from(turned)), turned);
-        let arc_m = STEP_RAD * limits.turning_radius_m * ARC_RADIUS;
-        let arc_m = arc_m.max(step_m);
-        let arc = move |length_m: f64, turned: i32| {
-            let length_m = arc_m.copysign(length_m);
-            (Motion::Arc(length_m, STEP_RAD * f64::from(turned)), turned)
-        };
-        let turns: ArrayVec<_, 4> = if limits.turns_in_place() {
-            [turn(1), turn(-1)].into_iter().collect()
-        } else {
-            let ways = [step_m].into_iter().chain(back);
-            ways.flat_map(|length_m| [arc(length_m, 1), arc(length_m, -1)]).collect()
-        };
-        let back = back.map(|back_m| (Motion::Drive(back_m), 0));
-        [(Motion::Drive(step_m), 0)].into_iter().chain(turns).chain(back)
-    }
-
     pub(super) fn is_free(&self, pose: Pose, motion: Motion) -> bool {
         motion.keeps_room(self.robot, pose, self.room_m, self.obstacles)
-    }
-
-    fn time_s(&self, motion: Motion) -> f64 {
-        let limits = &self.robot.limits;
-        match motion {
-            Motion::Turn(turn_rad) => turn_rad.abs() / (SPEED_SHARE * limits.omega_max_radps),
-            Motion::Drive(length_m) | Motion::Arc(length_m, _) => {
-                length_m.abs() / (SPEED_SHARE * limits.v_max_mps)
-            }
-            Motion::Wait(time_s) => time_s,
-        }
     }
 
     /// Lower bound on the time of a manoeuvre: straight until a point of the route is close
@@ -296,7 +255,7 @@ impl TightPlace<'_> {
 
     /// Side of the squares in which positions count as equal \[m\]: small compared with the
     /// footprint and the cells.
-    fn square_m(&self) -> f64 {
+    pub(super) fn square_m(&self) -> f64 {
         let inscribed_m = self.robot.footprint.inscribed_radius_m();
         let small_m = (0.25 * inscribed_m).max(0.1 * self.size_m());
         small_m.min(self.obstacles.frame().resolution_m())

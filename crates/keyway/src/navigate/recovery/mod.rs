@@ -7,6 +7,7 @@ mod line_up;
 mod manoeuvre;
 mod motion;
 mod off_wall;
+mod primitives;
 mod track;
 
 pub(super) use manoeuvre::TightPlace;
