@@ -44,3 +44,8 @@ cp "$scratch/map.png" docs/images/demo.png
 cp "$scratch/fan/fan.png" docs/images/stack/fan.png
 "$keyway" navigate "$scratch/small_house.yaml" "${ends[@]}" --moving 6,-0.35,0.25,-0.1,0 --out "$scratch/drive" > /dev/null
 cp "$scratch/drive/map.png" docs/images/stack/drive.png
+echo 'like = "jackal"
+limits = { min_turning_radius_m = 0.6, v_max_mps = 1.0 }' > "$scratch/my_car.toml"
+"$keyway" navigate "$scratch/small_house.yaml" --start -8.175,-2.825,180 --goal -3.6,-0.6,180 \
+    --robot "$scratch/my_car.toml" --out "$scratch/car" > /dev/null
+cp "$scratch/car/map.png" docs/images/stack/car.png
