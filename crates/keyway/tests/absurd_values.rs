@@ -133,7 +133,8 @@ fn any_robot() -> impl Strategy<Value = Robot> {
             .prop_map(|(length_m, width_m)| Footprint::rectangle(length_m, width_m).unwrap()),
     ];
     let rates = (between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4), between(1e-4, 1e4));
-    let speeds = (between(1e-4, 100.0), between(1e-4, 100.0), 0.0..=1.0f64);
+    let radii = prop_oneof![Just(0.0), between(1e-4, 100.0)];
+    let speeds = (between(1e-4, 100.0), between(1e-4, 100.0), 0.0..=1.0f64, radii);
     let margins = prop_oneof![Just(None), between(1e-4, 10.0).prop_map(Some)];
     let cycles = (between(1e-3, 10.0), 0.0..=10.0f64, margins);
     (footprint, cycles, speeds, rates).prop_map(
@@ -142,7 +143,7 @@ fn any_robot() -> impl Strategy<Value = Robot> {
                 v_min_mps: -speeds.2 * speeds.0,
                 v_max_mps: speeds.0,
                 omega_max_radps: speeds.1,
-                min_turning_radius_m: 0.0,
+                min_turning_radius_m: speeds.3,
                 acceleration_mps2: rates.0,
                 deceleration_mps2: rates.1,
                 angular_acceleration_radps2: rates.2,
