@@ -7,6 +7,9 @@ use keyway::robot::Footprint;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::{Table, Value};
 
+/// Nav2's own default of `min_turning_r` \[m\].
+const NAV2_TURNING_RADIUS_M: f64 = 0.2;
+
 /// The applicable parameters of a Nav2 file.
 #[derive(Debug, Default)]
 pub(super) struct Nav2 {
@@ -135,9 +138,12 @@ impl Nav2 {
         let slower = of_controller(&["decel_lim_x", "ax_min"]);
         let turn_faster = of_controller(&["acc_lim_theta", "az_max", "max_angular_accel"]);
         let turn_slower = of_controller(&["decel_lim_theta"]);
-        let radius = of_controller(&["AckermannConstraints.min_turning_r"]);
         let model = nodes.text(CONTROLLER, &format!("{plugin}.motion_model"));
         let is_car = model.is_some_and(|model| model == "Ackermann");
+        let radius = is_car.then(|| {
+            let name = format!("{plugin}.AckermannConstraints.min_turning_r");
+            nodes.number(CONTROLLER, &name).unwrap_or(NAV2_TURNING_RADIUS_M)
+        });
         let fault = &mut self.fault;
         let mut of_smoother = |name: &str| {
             let list = nodes.numbers(SMOOTHER, name).filter(|list| list.len() == 3);
@@ -162,7 +168,7 @@ impl Nav2 {
         // smoother.
         limits.v_min_mps = slowest.filter(|&v_mps| v_mps < 0.0).or(back.map(|back_mps| -back_mps));
         limits.omega_max_radps = lower(turn, top_turn);
-        limits.min_turning_radius_m = radius.filter(|_| is_car);
+        limits.min_turning_radius_m = radius;
         limits.acceleration_mps2 = lower(faster, gain);
         limits.deceleration_mps2 = lower(slower, brake).or(limits.acceleration_mps2);
         limits.angular_acceleration_radps2 = lower(turn_faster, turn_gain);

@@ -101,7 +101,7 @@ impl Follower {
         let curvature =
             if distance_m > 0.0 { 2.0 * libm::sin(bearing_rad) / distance_m } else { 0.0 };
         // A car-like robot drives a loop to what lies behind it.
-        let sharpest = limits.min_turning_radius_m.recip();
+        let sharpest = limits.min_turning_radius_m.abs().recip();
         let sought = if is_behind { sharpest.copysign(bearing_rad) } else { curvature };
         let curvature = sought.clamp(-sharpest, sharpest);
         let stop_mps = limits.stoppable_mps(scene.velocity.v, left_m, self.robot.cycle_s);

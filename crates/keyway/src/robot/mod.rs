@@ -57,7 +57,7 @@ pub struct Limits {
     pub v_max_mps: f64,
     /// Largest turn rate to either side \[rad/s\], from 0.0001 to 100.
     pub omega_max_radps: f64,
-    /// Smallest turning radius \[m\], up to 100: that of a car-like robot, which turns only while
+    /// Smallest turning radius \[m\], from 0.0001 to 100: that of a car-like robot, which turns only while
     /// it drives. Default: 0, for a robot that turns in place.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub min_turning_radius_m: f64,
@@ -111,9 +111,9 @@ impl Robot {
             ("limits.omega_max_radps", omega_max_radps, speeds, speed),
             (
                 "limits.min_turning_radius_m",
-                self.limits.min_turning_radius_m,
-                0.0..=100.0,
-                "a length from 0 to 100 m",
+                if self.limits.turns_in_place() { 1.0 } else { self.limits.min_turning_radius_m },
+                1e-4..=100.0,
+                "0, or a length from 0.0001 to 100 m",
             ),
             ("limits.acceleration_mps2", acceleration_mps2, rates.clone(), rate),
             ("limits.deceleration_mps2", deceleration_mps2, rates.clone(), rate),

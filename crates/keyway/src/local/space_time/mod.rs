@@ -189,7 +189,11 @@ impl SpaceTime {
     /// Command of the first cycle of a trajectory.
     fn command(&self, scene: &Scene<'_>, first: Velocity, judge: &Judge<'_>) -> Velocity {
         let Robot { limits, cycle_s, .. } = &*self.robot;
-        let asked = scene.velocity.lerp(first, cycle_s / judge.stretch_s);
+        // A car-like robot that is to stop, often in order to reverse, does so at once: by a part
+        // of its speed in every cycle it never would.
+        let stops = first == Velocity::ZERO && !limits.turns_in_place();
+        let part = if stops { 1.0 } else { cycle_s / judge.stretch_s };
+        let asked = scene.velocity.lerp(first, part);
         let stoppable = limits.stoppable_mps(scene.velocity.v, judge.remaining_m, *cycle_s);
         let asked = Velocity::new(asked.v.clamp(-stoppable, stoppable), asked.omega);
         limits.reached(scene.velocity, asked, *cycle_s)

@@ -25,7 +25,7 @@ use super::pose_times::{
 use crate::geometry::Point;
 use crate::local::rear::Seen;
 use crate::robot::Limits;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Costs of headings at the places near the path.
 #[derive(Debug, Default)]
@@ -68,7 +68,8 @@ impl LastTurn {
         let (ahead_s, start_s) = (min_turning_radius_m / v_max_mps, v_max_mps / acceleration_mps2);
         // An arc ahead and one back turn by half of the angle each; or a whole loop.
         let (once_s, radian_s) = if driven.can_reverse {
-            (start_s, 0.5 * (ahead_s - min_turning_radius_m / v_min_mps))
+            let slower = (v_max_mps / -v_min_mps).clamp(1.0, MotionTicks::MOST_SLOWER);
+            (start_s, 0.5 * ahead_s * (1.0 + slower))
         } else {
             (TAU * ahead_s, 0.0)
         };
@@ -157,7 +158,11 @@ impl PoseCost {
             }
             (from, heading) = (to, stretch);
         }
-        true
+        // What is left has to lie on an arc that is no tighter than the turning radius.
+        let left = self.way.last().map_or(Point::default(), |&end| end - from);
+        let bearing_rad = libm::atan2(heading.cross(left), heading.dot(left)).abs();
+        let sine = libm::sin(bearing_rad.min(FRAC_PI_2));
+        left.norm() >= 2.0 * radius_m * sine
     }
 
     /// Largest change of the direction from stretch to stretch of a gentle path, each as long as an

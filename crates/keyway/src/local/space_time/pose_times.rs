@@ -432,21 +432,26 @@ pub(super) struct MotionTicks {
 }
 
 impl MotionTicks {
-    /// With more steps, an arc could lead across a wall: no point within an inscribed radius of it
-    /// is free.
+    /// An arc of more points along an axis could lead across a wall: no point within an inscribed
+    /// radius of it is free.
     const MOST_ARC_STEPS: f64 = 6.0;
+
+    /// Limit of the time of a step back, in steps ahead.
+    pub(super) const MOST_SLOWER: f64 = 25.0;
 
     /// Motions of a robot, in ticks of `tick_s` and steps of `step_m`.
     pub(super) fn new(limits: &Limits, can_reverse: bool, (tick_s, step_m): (f64, f64)) -> Self {
         let Limits { v_max_mps, v_min_mps, omega_max_radps, min_turning_radius_m, .. } = *limits;
         let ticks = |time_s: f64| (time_s / tick_s).round().clamp(1.0, 255.0) as u16;
         let turn = ticks(HEADING_RAD / omega_max_radps);
-        let slower = if can_reverse { (v_max_mps / -v_min_mps).clamp(1.0, 25.0) } else { 0.0 };
+        let slower =
+            if can_reverse { (v_max_mps / -v_min_mps).clamp(1.0, Self::MOST_SLOWER) } else { 0.0 };
         let back = AHEAD.map(|ahead| (f64::from(ahead) * slower).round() as u16);
         let arc_m = min_turning_radius_m * HEADING_RAD;
         let arc_steps = AHEAD.map(|ahead| {
-            let one_m = f64::from(ahead) / STEP_TICKS * step_m;
-            (arc_m / one_m).round().clamp(1.0, Self::MOST_ARC_STEPS) as u16
+            let points = f64::from(ahead) / STEP_TICKS;
+            let most = (Self::MOST_ARC_STEPS / points).floor();
+            (arc_m / (points * step_m)).round().clamp(1.0, most) as u16
         });
         Self { turn, turns_in_place: limits.turns_in_place(), arc_steps, can_reverse, back }
     }

@@ -209,6 +209,12 @@ impl OnTheSpot<'_> {
         })
     }
 
+    /// True if a robot that cannot turn in place makes do without a rotation.
+    fn drives_straight(&self, turn_rad: f64) -> bool {
+        let turns_in_place = self.robot.limits.turns_in_place();
+        !turns_in_place && wrap_angle(turn_rad).abs() <= Self::NEARLY_RAD
+    }
+
     /// A rotation towards a point, if it is large enough to be useful.
     pub(super) fn turn_towards(&self, pose: Pose, place: Point) -> Option<Vec<Motion>> {
         let bearing_rad = pose.bearing_to(place);
@@ -235,7 +241,7 @@ impl OnTheSpot<'_> {
             let mut ways = backwards.into_iter().chain([(ahead_rad, length_m)]);
             ways.find_map(|(turn_rad, length_m)| {
                 let turn_rad = match self.turn(pose, turn_rad) {
-                    None if wrap_angle(turn_rad).abs() <= Self::NEARLY_RAD => 0.0,
+                    None if self.drives_straight(turn_rad) => 0.0,
                     turn_rad => turn_rad?,
                 };
                 let facing = Pose::new(pose.x, pose.y, pose.theta + turn_rad);

@@ -155,11 +155,27 @@ impl MotionUnderWay {
                 let fastest = if left_m < 0.0 { -limits.v_min_mps } else { limits.v_max_mps };
                 let most = fastest.min(share() * limits.v_max_mps).min(seen_mps(robot, left_m));
                 let stops = limits.stoppable_mps(velocity.v, left_m.abs(), cycle_s);
-                let v = stops.min(most).copysign(left_m);
-                Velocity::new(v, v * self.left.curvature_radpm())
+                let straight = Velocity::new(stops.min(most).copysign(left_m), 0.0);
+                match self.left {
+                    Motion::Arc(..) => self.on_arc(straight, moment),
+                    _ => straight,
+                }
             }
         };
         MotionStep::Moving(command)
+    }
+}
+
+impl MotionUnderWay {
+    /// A velocity on the arc, with the speed that is reached towards a straight one in this cycle:
+    /// speed and turn rate grow in proportion, so that the robot stays on the arc.
+    fn on_arc(&self, straight: Velocity, moment: &Moment<'_>) -> Velocity {
+        let limits = &moment.robot.limits;
+        let curvature = self.left.curvature_radpm();
+        let most_mps = limits.omega_max_radps / curvature.abs();
+        let within = Velocity::new(straight.v.clamp(-most_mps, most_mps), 0.0);
+        let v = limits.reached(moment.velocity, within, moment.robot.cycle_s).v;
+        limits.clamped(Velocity::new(v, v * curvature))
     }
 }
 
