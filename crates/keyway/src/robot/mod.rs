@@ -57,8 +57,8 @@ pub struct Limits {
     pub v_max_mps: f64,
     /// Largest turn rate to either side \[rad/s\], from 0.0001 to 100.
     pub omega_max_radps: f64,
-    /// Smallest turning radius \[m\], from 0.0001 to 100: that of a car-like robot, which turns only while
-    /// it drives. Default: 0, for a robot that turns in place.
+    /// Smallest turning radius \[m\], from 0.0001 to 100: that of a car-like robot, which turns
+    /// only while it drives. Default: 0, for a robot that turns in place.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub min_turning_radius_m: f64,
     /// Acceleration \[m/s²\], from 0.0001 to 10000 like those below.
