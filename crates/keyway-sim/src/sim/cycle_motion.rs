@@ -1,4 +1,4 @@
-//! The motion of one control cycle of a differential drive.
+//! The motion of one control cycle.
 
 use keyway::geometry::{Pose, Velocity};
 use keyway::robot::Footprint;

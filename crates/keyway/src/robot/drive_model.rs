@@ -115,10 +115,9 @@ impl Limits {
 
     /// The velocity after `duration_s` if `command` is requested: each component moves towards the
     /// command as far as its limits and accelerations allow. The turn rate of a car-like robot
-    /// also falls with its speed, and it stops before it changes its direction.
+    /// also falls with its speed, and it stops before it changes its direction of travel.
     pub fn reached(&self, from: Velocity, command: Velocity, duration_s: f64) -> Velocity {
-        let reached =
-            self.reached_apart(from, self.steered(self.clamped_apart(command)), duration_s);
+        let reached = self.reached_apart(from, self.clamped(command), duration_s);
         self.steered_from(from, reached)
     }
 

@@ -109,12 +109,6 @@ impl Robot {
                 "0, or negative for a robot that backs up, and at least -100",
             ),
             ("limits.omega_max_radps", omega_max_radps, speeds, speed),
-            (
-                "limits.min_turning_radius_m",
-                if self.limits.turns_in_place() { 1.0 } else { self.limits.min_turning_radius_m },
-                1e-4..=100.0,
-                "0, or a length from 0.0001 to 100 m",
-            ),
             ("limits.acceleration_mps2", acceleration_mps2, rates.clone(), rate),
             ("limits.deceleration_mps2", deceleration_mps2, rates.clone(), rate),
             (

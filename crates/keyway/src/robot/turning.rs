@@ -38,21 +38,25 @@ impl Limits {
         if reverses { Velocity::ZERO } else { self.steered(to) }
     }
 
-    /// Refuses jerk limits of a car-like robot: the mean of a velocity ahead and one back is none
-    /// that its wheels can have.
+    /// Refuses a radius that no robot has, and jerk limits of a car-like robot: the mean of a
+    /// velocity ahead and one back is none that its wheels can have.
     pub(super) fn check_turning(&self) -> Result<(), ConfigError> {
+        if self.turns_in_place() {
+            return Ok(());
+        }
+        let radius_m = self.min_turning_radius_m;
+        if !(1e-4..=100.0).contains(&radius_m) {
+            let expected = "0, or a length from 0.0001 to 100 m";
+            return Err(ConfigError::must_be("limits.min_turning_radius_m", expected, radius_m));
+        }
         let limited = [
             ("limits.jerk_mps3", self.jerk_mps3),
             ("limits.angular_jerk_radps3", self.angular_jerk_radps3),
         ];
         let limited = limited.into_iter().find_map(|(field, jerk)| Some((field, jerk?)));
-        match limited {
-            Some((field, jerk)) if !self.turns_in_place() => {
-                let expected = "left out for a robot with limits.min_turning_radius_m";
-                Err(ConfigError::must_be(field, expected, jerk))
-            }
-            _ => Ok(()),
-        }
+        let Some((field, jerk)) = limited else { return Ok(()) };
+        let expected = "left out for a robot with limits.min_turning_radius_m";
+        Err(ConfigError::must_be(field, expected, jerk))
     }
 }
 

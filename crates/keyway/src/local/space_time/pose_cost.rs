@@ -6,7 +6,8 @@
 //! and one that is to be there tail first turns before it. This computes the least time from
 //! every position and heading near the path ahead to its end, over motions on a lattice: turning
 //! on the spot, ahead and, if the robot can, back, each straight on or with a turn to the next
-//! heading. A place is free at a heading if the footprint fits somewhere in the lattice's square
+//! heading; a car-like robot has no turns on the spot, and arcs that are as long as its turning
+//! radius requires. A place is free at a heading if the footprint fits somewhere in the lattice's square
 //! around it, at that heading or halfway to the next ones. The time without headings is computed
 //! on the same lattice, so that both contain the same discretization error.
 //!

@@ -124,7 +124,7 @@ impl Navigator {
         }
         if !self.parts.robot.limits.turns_in_place() {
             let reason =
-                "cannot be turned by: the robot does not turn in place (`min_turning_radius_m`)";
+                "cannot be turned: the robot does not turn in place (`min_turning_radius_m`)";
             return Err(ConfigError::new("angle_rad", reason));
         }
         self.begin(Motion::Turn(angle_rad), allowance_s)

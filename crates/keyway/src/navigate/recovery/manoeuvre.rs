@@ -1,5 +1,6 @@
 //! Manoeuvres: a pose in a tight place -> rotations on the spot and straight drives that lead on
-//! along the route.
+//! along the route. A robot that cannot turn in place drives arcs (`primitives.rs`), which the
+//! search alone uses.
 //!
 //! A route is planned for a disc. If the robot can follow it exactly, with rotations on the spot
 //! at its corners, it does so: that needs little margin. If only the inscribed disc fits, a

@@ -33,7 +33,8 @@ pub enum RecoveryKind {
     /// Rotate on the spot towards the guide point, in the shorter direction that has space.
     Turn,
     /// Rotate and drive straight to a position at which the robot can turn around again, farther
-    /// along the route, or at which it can face the route. Needs little margin, and no curves.
+    /// along the route, or at which it can face the route. Needs little margin, and no curves; a
+    /// robot that cannot turn in place drives arcs instead.
     Manoeuvre,
     /// Drive straight back to an earlier position; a robot that cannot drive backwards turns
     /// around first.

@@ -1,11 +1,13 @@
-//! Motions of recoveries: rotations on the spot, straight drives and pauses, each certified
-//! before it is commanded.
+//! Motions of recoveries: rotations on the spot, arcs of a robot that cannot do those, straight
+//! drives and pauses, each certified before it is commanded.
 //!
 //! In every cycle, the whole rest of a motion is certified to keep its clearance by
-//! [`Footprint::keeps_room_turning`] or [`Footprint::keeps_room_driving`], and the velocity is
-//! one from which the robot can stop within that rest. A motion can therefore be aborted in any
-//! cycle: braking needs no more space than was certified.
+//! [`Footprint::keeps_room_turning`], [`Footprint::keeps_room_on_arc`] or
+//! [`Footprint::keeps_room_driving`], and the velocity is one from which the robot can stop within
+//! that rest. A motion can therefore be aborted in any cycle: braking needs no more space than was
+//! certified. Arcs are driven less exactly, and rely on their clearance.
 //!
+//! [`Footprint::keeps_room_on_arc`]: crate::robot::Footprint::keeps_room_on_arc
 //! [`Footprint::keeps_room_turning`]: crate::robot::Footprint::keeps_room_turning
 //! [`Footprint::keeps_room_driving`]: crate::robot::Footprint::keeps_room_driving
 
