@@ -179,12 +179,12 @@ impl ControllerConfig {
 
     /// Derives the parameters from the robot. The goal tolerance is 0.15 m or half the inscribed
     /// radius, whichever is larger; the tolerance of its heading is 0.05 rad, or 0.1 rad for a
-    /// car-like robot; the least clearance is the inscribed radius plus the margin
-    /// of the local planner; and the start tolerance is 5 cm (a cell of most maps, and the usual
-    /// error of a scan-based localisation). The route is watched, the robot takes detours around
-    /// moving obstacles that hold it up and makes way where two cannot pass, all recoveries are
-    /// enabled, and it backs up by at most twice its circumscribed radius. Moving obstacles are
-    /// tracked; there is no stop rule. A blind robot stops.
+    /// car-like robot; the least clearance is the inscribed radius plus the margin of the local
+    /// planner; and the start tolerance is 5 cm (a cell of most maps, and the usual error of a
+    /// scan-based localisation). The route is watched, the robot takes detours around moving
+    /// obstacles that hold it up and makes way where two cannot pass, all recoveries are enabled,
+    /// and it backs up by at most twice its circumscribed radius. Moving obstacles are tracked;
+    /// there is no stop rule. A blind robot stops.
     pub fn for_robot(robot: &Robot) -> Self {
         // A car-like robot has no last turn in place.
         let turns = robot.limits.turns_in_place();

@@ -3,11 +3,11 @@
 //!
 //! On open ground, a robot turns while it drives, and its time to go is that of a point. In a
 //! narrow passage it is not: a robot that is nose first in a bay has to leave it to turn around,
-//! and one that is to be there tail first turns before it. This computes the least time from
-//! every position and heading near the path ahead to its end, over motions on a lattice: turning
-//! on the spot, ahead and, if the robot can, back, each straight on or with a turn to the next
-//! heading; a car-like robot has no turns on the spot, and arcs that are as long as its turning
-//! radius requires. A place is free at a heading if the footprint fits somewhere in the lattice's square
+//! and one that is to be there tail first turns before it. This computes the least time from every
+//! position and heading near the path ahead to its end, over motions on a lattice: turning on the
+//! spot, ahead and, if the robot can, back, each straight on or with a turn to the next heading; a
+//! car-like robot has no turns on the spot, and arcs that are as long as its turning radius
+//! requires. A place is free at a heading if the footprint fits somewhere in the lattice's square
 //! around it, at that heading or halfway to the next ones. The time without headings is computed
 //! on the same lattice, so that both contain the same discretization error.
 //!
