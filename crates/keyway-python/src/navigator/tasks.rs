@@ -92,7 +92,7 @@ impl Navigator {
 
     /// Turns on the spot by an angle [rad], positive to the left, within a time [s]. The robot
     /// brakes first, and the turn ends when it is stationary again. It avoids contact: without
-    /// enough clearance it waits, until the time is over. A car-like robot refuses (ValueError).
+    /// enough clearance it waits, until the time is over. A car-like robot refuses (`ValueError`).
     ///
     /// >>> import keyway, numpy as np
     /// >>> grid = keyway.Map.from_array(np.zeros((40, 40), dtype=bool), resolution=0.1)
