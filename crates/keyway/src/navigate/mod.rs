@@ -50,6 +50,7 @@ mod error;
 mod fitted;
 mod goal;
 mod headings;
+mod layers;
 mod masks;
 mod met;
 mod misfit;

@@ -1,122 +1,19 @@
-//! Map layers of a robot, and routes on the widest layer that has a path.
+//! Routes of a robot on the widest of its map layers that has a path.
 
 use super::headings::fits_within;
+use super::layers::Layers;
 use super::start::{StartTooNear, nearest_fitting, touches_at_every_heading};
-use super::{FittedStack, Goal, HeadingRange, NavigateError, Stack};
-use crate::ConfigError;
+use super::{FittedStack, Goal, HeadingRange, NavigateError};
 use crate::geometry::{Disc, Point, Polyline, Pose};
 use crate::map::{
-    Cell, CellState, CellWindow, DistanceField, Edit, FieldConfig, LayerConfig, OccupancyGrid,
-    SearchMap,
+    Cell, CellState, CellWindow, DistanceField, FieldConfig, LayerConfig, OccupancyGrid, SearchMap,
 };
 use crate::plan::{GlobalPlanner, PathEnd, Plan, PlanError};
 use crate::robot::{Footprint, Robot};
-use crate::route::{
-    BetweenCells, EndRule, Route, RouteQuery, looser_clearance_m, plan_between_cells, plan_route,
-};
+use crate::route::{BetweenCells, EndRule, Route, RouteQuery, plan_between_cells, plan_route};
 use crate::search::{IfUnreachable, Query, Workspace};
 use crate::smooth::Smoother;
 use std::sync::Arc;
-
-/// The map layers of one robot, widest clearance first: a route uses the first one that has a
-/// path.
-///
-/// The last one is for a robot that senses obstacles along its route: a lane between a sensed
-/// obstacle and a wall may fit the robot although it contains no cell whose centre keeps the
-/// clearance. The route then indicates where to try, and the local planner decides if the robot
-/// fits.
-#[derive(Clone, Debug)]
-pub(super) struct Layers {
-    pub(super) maps: Vec<SearchMap>,
-    /// Number of maps whose clearance is sufficient for the robot.
-    fitting: usize,
-    /// True if the last but one of these was added for a route.
-    is_inserted: bool,
-    /// True if a route had to lead between the centres of cells, so later ones may have to.
-    pub(super) is_between_cells: bool,
-}
-
-impl Layers {
-    fn new(known: &OccupancyGrid, stack: &Stack, robot: &Robot) -> Result<Self, ConfigError> {
-        let layer = |config| SearchMap::new(known, config).map_err(|error| error.within("map"));
-        let least_m = stack.controller.least_clearance_m;
-        // For a round robot, the second one is the last one.
-        let turning_m = turning_clearance_m(stack, robot);
-        let mut maps = vec![layer(stack.map.clone())?];
-        for clearance_m in [turning_m, least_m] {
-            if maps.last().is_some_and(|map| clearance_m < map.config().clearance_m) {
-                maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
-            }
-        }
-        let fitting = maps.len();
-        // A lane that is just wide enough has a cell near its centreline.
-        let narrowest_m = least_m.min(stack.map.clearance_m);
-        let clearance_m = looser_clearance_m(known.frame(), narrowest_m);
-        maps.push(layer(LayerConfig { clearance_m, ..stack.map.clone() })?);
-        Ok(Self { maps, fitting, is_inserted: false, is_between_cells: false })
-    }
-
-    /// Adds a map with a clearance between those that are sufficient for the robot, in place of
-    /// the one that was added last.
-    fn insert(&mut self, map: SearchMap) {
-        let at = self.fitting - 1;
-        if self.is_inserted {
-            self.maps[at - 1] = map;
-            return;
-        }
-        self.maps.insert(at, map);
-        (self.fitting, self.is_inserted) = (self.fitting + 1, true);
-    }
-
-    /// The maps whose clearance is sufficient for the robot.
-    fn fitting(&self) -> &[SearchMap] {
-        &self.maps[..self.fitting]
-    }
-
-    /// The last map, and the clearance that the robot needs \[m\]; `None` if no map has a smaller
-    /// clearance than that.
-    fn looser(&mut self) -> Option<(&mut SearchMap, f64)> {
-        let [.., least, looser] = &mut self.maps[..] else { return None };
-        let needed_m = least.config().clearance_m;
-        (looser.config().clearance_m < needed_m).then_some((looser, needed_m))
-    }
-
-    /// Changes some cells of all maps.
-    pub(super) fn mark(&mut self, cells: &[Cell], state: impl Fn(Cell) -> CellState) {
-        let edits: Vec<_> = cells.iter().map(|&cell| Edit { cell, state: state(cell) }).collect();
-        self.maps.iter_mut().for_each(|map| map.apply(&edits));
-    }
-
-    /// Resets some cells of all maps to their state in the known map.
-    pub(super) fn unmark(&mut self, cells: &[Cell], known: &OccupancyGrid) {
-        self.mark(cells, |cell| known.state(cell).unwrap_or(CellState::Free));
-    }
-
-    /// Clearance of the map that was added for a route, if any \[m\].
-    pub(super) fn inserted_m(&self) -> Option<f64> {
-        self.is_inserted.then(|| self.maps[self.fitting - 2].config().clearance_m)
-    }
-
-    /// Adds a map of a stored clearance \[m\].
-    pub(super) fn insert_again(&mut self, known: &OccupancyGrid, clearance_m: f64) {
-        let config = LayerConfig { clearance_m, ..self.maps[0].config().clone() };
-        if let Ok(map) = SearchMap::new(known, config) {
-            self.insert(map);
-        }
-    }
-
-    /// One of the maps; all have the same obstacles.
-    pub(super) fn obstacles(&self) -> &SearchMap {
-        &self.maps[0]
-    }
-}
-
-/// The smallest clearance at which the robot can rotate on the spot anywhere \[m\].
-pub(super) fn turning_clearance_m(stack: &Stack, robot: &Robot) -> f64 {
-    let Robot { footprint, .. } = robot;
-    stack.controller.least_clearance_m + footprint.circumscribed_radius_m()
-        - footprint.inscribed_radius_m()
-}
 
 /// Plans the routes of one robot, on layers that include the sensed obstacles.
 pub(super) struct Router {
@@ -299,6 +196,37 @@ impl Router {
         // Searches that have failed so far fail at once, since start and goal are not connected.
         let any = self.layers.maps.len();
         between.map_or_else(|| self.first_of(any, &query), Ok)
+    }
+
+    /// [`Self::again`], with less clearance, but enough, if that saves more than a detour \[m\].
+    pub(super) fn again_within(
+        &mut self,
+        (position, goal): (Point, Point),
+        budget: u64,
+        detour_m: f64,
+    ) -> Result<Route, NavigateError> {
+        let route = self.again(position, goal, budget)?;
+        let query =
+            RouteQuery { budget: Some(budget), ..footprint_query(position, goal, self.radius_m) };
+        Ok(self.shorter(&query, &route, detour_m).unwrap_or(route))
+    }
+
+    /// A route with less clearance, but enough, if a given one is longer by more than a detour.
+    fn shorter(&mut self, query: &RouteQuery, route: &Route, detour_m: f64) -> Option<Route> {
+        let Self { layers, planner, smoother, workspace, .. } = self;
+        let length_m = |route: &Route| route.smoothed.length_m();
+        if length_m(route) <= query.start.distance(query.goal) + detour_m {
+            return None;
+        }
+        let is_narrower = |map: &&SearchMap| map.config().clearance_m < route.clearance_m;
+        let mut on = |map| plan_route(map, &**planner, &**smoother, query, workspace, &mut ()).ok();
+        let narrower = layers.fitting().iter().filter(is_narrower);
+        let shortest = on(narrower.clone().last()?)?;
+        let most_m = length_m(&shortest) + detour_m;
+        if length_m(route) <= most_m {
+            return None;
+        }
+        narrower.filter_map(on).find(|route| length_m(route) <= most_m)
     }
 
     /// The route on the first of the widest maps that has one.

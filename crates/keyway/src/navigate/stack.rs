@@ -47,6 +47,13 @@ pub struct ControllerConfig {
     pub goal_yaw_tolerance_rad: f64,
     /// Clearance of a route if no path keeps `map.clearance_m` \[m\].
     pub least_clearance_m: f64,
+    /// Longest detour of a new route, planned on the way, for more clearance than
+    /// `least_clearance_m` \[m\]: it has the largest clearance up to `map.clearance_m` at which it
+    /// is no longer than this and the shortest one with the least clearance. 2 m in stack files
+    /// without this field. The first route of a task has the largest clearance, however long it
+    /// is.
+    #[serde(default = "two_metres")]
+    pub detour_for_clearance_m: f64,
     /// Tolerated error of a start \[m\]: a robot that touches an obstacle there, but none at a
     /// position within this distance, starts, and leaves the obstacle first. 0 rejects every such
     /// start, also in stack files without this field.
@@ -125,6 +132,10 @@ const fn yes() -> bool {
     true
 }
 
+const fn two_metres() -> f64 {
+    ControllerConfig::PAPER.detour_for_clearance_m
+}
+
 impl ControllerConfig {
     /// Values for \[You2021\], whose robot is a point that plans only once. A new route is
     /// planned only if the robot would otherwise stay stationary forever.
@@ -132,6 +143,7 @@ impl ControllerConfig {
         goal_tolerance_m: 0.5,
         goal_yaw_tolerance_rad: 0.05,
         least_clearance_m: 0.0,
+        detour_for_clearance_m: 2.0,
         start_error_m: 0.0,
         watch_route: false,
         go_around: false,
@@ -154,6 +166,7 @@ impl ControllerConfig {
         "goal_tolerance_m",
         "goal_yaw_tolerance_rad",
         "least_clearance_m",
+        "detour_for_clearance_m",
         "start_error_m",
         "watch_route",
         "go_around",
@@ -234,6 +247,8 @@ impl ControllerConfig {
         ConfigError::unless_positive("back_up_m", self.back_up_m)?;
         ConfigError::unless_not_negative("wait_s", self.wait_s)?;
         ConfigError::unless_not_negative("least_clearance_m", self.least_clearance_m)?;
+        let detour_m = self.detour_for_clearance_m;
+        ConfigError::unless_not_negative("detour_for_clearance_m", detour_m)?;
         ConfigError::unless_not_negative("start_error_m", self.start_error_m)?;
         if self.go_around && self.movers.is_none() {
             let reason = "needs `controller.movers`: the robot cannot go around moving obstacles \

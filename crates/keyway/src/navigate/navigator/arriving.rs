@@ -15,7 +15,7 @@ impl Deciding<'_> {
         let tolerance_m = self.stack.controller.goal_tolerance_m;
         let is_there = position.distance(self.task.next_stop()) <= tolerance_m;
         if is_there && !self.task.is_last_leg() {
-            self.task.passed += 1;
+            self.task.begin_next_leg();
             self.task.mode = Mode::Following;
             self.task.watch = Watch::NEW;
             self.replan();

@@ -3,8 +3,8 @@
 use super::Deciding;
 use crate::geometry::{Disc, Point, Polyline};
 use crate::guide::GuideMemory;
+use crate::navigate::layers::turning_clearance_m;
 use crate::navigate::mode::Mode;
-use crate::navigate::route::turning_clearance_m;
 use crate::navigate::task::{GivenPath, Task};
 use crate::navigate::watch::{RestOfRoute, Watch};
 use crate::navigate::world::World;
@@ -156,7 +156,10 @@ impl Deciding<'_> {
         }
         self.world.walked.avoid(&[]);
         let (stop, config) = (self.task.next_stop(), &self.stack.controller);
-        match self.world.router.again(self.pose.point(), stop, config.replan_budget) {
+        let detour_m =
+            if self.task.was_held_up { f64::INFINITY } else { config.detour_for_clearance_m };
+        let ends = (self.pose.point(), stop);
+        match self.world.router.again_within(ends, config.replan_budget, detour_m) {
             Ok(route) => self.take(route),
             Err(why) => {
                 let longest_s = config.longest_wait_s.max(config.blocked_s);
@@ -189,8 +192,7 @@ impl Deciding<'_> {
             }
         }
         self.task.skipped.push(self.task.passed);
-        self.task.passed += 1;
-        self.task.waited_s = 0.0;
+        self.task.begin_next_leg();
         self.replan();
     }
 

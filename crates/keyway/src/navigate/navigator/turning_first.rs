@@ -3,9 +3,9 @@
 use super::Deciding;
 use crate::geometry::{Pose, Velocity};
 use crate::navigate::RecoveryKind;
+use crate::navigate::layers::turning_clearance_m;
 use crate::navigate::mode::Mode;
 use crate::navigate::recovery::{Motion, MotionStep, MotionUnderWay, OnTheSpot, kept_room_m};
-use crate::navigate::route::turning_clearance_m;
 use crate::robot::Footprint;
 use std::f64::consts::FRAC_PI_6;
 
