@@ -183,6 +183,57 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
     assert_eq!(unwatched.routes_planned(), 1);
 }
 
+/// A scan of a wall of 7 m, 2 m ahead of a jackal at (2, 2), with a passage of 0.6 m: wide enough
+/// to drive through, too narrow to turn in.
+fn wall_with_a_passage() -> Scan {
+    let bearing_rad = |i: i32| -1.2 + 0.005 * f64::from(i);
+    let range = |i: i32| {
+        let y = 2.0 + 2.0 * bearing_rad(i).tan();
+        let is_wall = (0.0..7.0).contains(&y) && (y - 2.0).abs() >= 0.3;
+        if is_wall { 2.0 / bearing_rad(i).cos() } else { f64::INFINITY }
+    };
+    Scan {
+        angle_min_rad: bearing_rad(0),
+        angle_increment_rad: 0.005,
+        range_min_m: 0.0,
+        range_max_m: 30.0,
+        ranges_m: (0..=480).map(range).collect(),
+    }
+}
+
+/// The lengths of the routes of a jackal that stays where it sees that wall, cycle by cycle.
+fn lengths_before_the_passage(detour_m: f64, cycles: u32) -> Vec<f64> {
+    let frame = GridFrame::new(240, 200, 0.05, Pose::default()).unwrap();
+    let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
+    let (robot, start) = (Robot::jackal(), Point::new(2.0, 2.0));
+    let mut stack = Stack::keyway(&robot);
+    stack.controller.detour_for_clearance_m = detour_m;
+    let goal = Point::new(6.0, 2.0);
+    let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
+    let pose = Pose::new(start.x, start.y, 0.0);
+    let steps = (0..cycles).map(|_| {
+        next_step(&mut navigator, pose, Velocity::ZERO, &wall_with_a_passage());
+        navigator.route().unwrap().smoothed.length_m()
+    });
+    steps.collect()
+}
+
+/// Around the wall it is at least 2 sqrt(2^2 + 5^2) = 10.8 m, through the passage about 4 m.
+#[test]
+fn a_new_route_takes_no_long_detour_for_more_clearance() {
+    let length_m = |detour_m| lengths_before_the_passage(detour_m, 1)[0];
+    assert!((4.0..5.0).contains(&length_m(2.0)), "{}", length_m(2.0));
+    assert!((4.0..5.0).contains(&length_m(6.0)), "{}", length_m(6.0));
+    assert!(length_m(8.0) > 10.7, "{}", length_m(8.0));
+}
+
+#[test]
+fn a_robot_without_progress_takes_any_detour() {
+    let lengths_m = lengths_before_the_passage(2.0, 200);
+    let around = lengths_m.iter().position(|length_m| *length_m > 10.7).unwrap();
+    assert!(around > 10 && lengths_m[around..].iter().all(|length_m| *length_m > 10.7));
+}
+
 /// The message uses metres and the radius of the robot, because cells and the clearance of a layer
 /// are not user settings.
 #[test]
