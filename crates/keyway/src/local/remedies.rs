@@ -56,7 +56,9 @@ pub(super) fn of(planner: &impl Remediable, scene: &Scene<'_>) -> Vec<Remedy> {
         change: Change::Wait { duration_s },
         frees: standing.is_some_and(|standing| planner.drives(&standing)),
     };
-    let mut remedies = vec![wait, turn(planner, standing.as_ref())];
+    let mut remedies = vec![wait];
+    let turns = planner.robot().limits.turns_in_place();
+    remedies.extend(turns.then(|| turn(planner, standing.as_ref())));
     remedies.extend(back_up(planner, standing.as_ref()));
     remedies.extend(smaller_margin(planner, scene));
     remedies.extend(smaller_footprint(planner, scene));
@@ -82,9 +84,7 @@ fn stopped<'a>(robot: &Robot, scene: &Scene<'a>) -> (Option<Scene<'a>>, f64) {
 
 fn turn(planner: &impl Remediable, standing: Option<&Scene<'_>>) -> Remedy {
     let not = Remedy { change: Change::Turn { by_rad: PI }, frees: false };
-    let Some(scene) = standing.filter(|_| planner.robot().limits.turns_in_place()) else {
-        return not;
-    };
+    let Some(scene) = standing else { return not };
     let (point, theta) = (scene.pose.point(), scene.pose.theta);
     let towards_rad = TURN_STEP_RAD.copysign(scene.pose.bearing_to(scene.guide));
     let steps = (PI / TURN_STEP_RAD).round() as u32;

@@ -5,7 +5,7 @@
 //! one of these. Between two of them with the same direction of travel all others are as well, and
 //! the robot stops before it changes that direction: it never turns more tightly.
 
-use super::Limits;
+use super::{Limits, Robot};
 use crate::ConfigError;
 use crate::geometry::Velocity;
 
@@ -60,10 +60,22 @@ impl Limits {
     }
 }
 
+impl Robot {
+    /// A measured velocity without the noise that the wheels of a car-like robot cannot have: at
+    /// rest, a slow motion of the wrong sign would have to be braked first.
+    pub(crate) fn without_noise(&self, measured: Velocity) -> Velocity {
+        let limits = &self.limits;
+        if limits.turns_in_place() {
+            return measured;
+        }
+        let is_at_rest = measured.v.abs() <= self.standing().v;
+        if is_at_rest { Velocity::ZERO } else { limits.steered(measured) }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::Robot;
     use proptest::prelude::*;
 
     fn car() -> Limits {
@@ -90,6 +102,17 @@ mod tests {
         let reached = limits.reached(from, Velocity::new(-0.5, 0.5), 0.1);
         assert_eq!(reached, Velocity::ZERO);
         assert!(limits.reached(reached, Velocity::new(-0.5, 0.5), 0.1).v < 0.0);
+    }
+
+    #[test]
+    fn noise_at_rest_is_no_motion() {
+        let robot = Robot { limits: car(), ..Robot::jackal() };
+        let without_noise = |v, omega| robot.without_noise(Velocity::new(v, omega));
+        assert_eq!(without_noise(-0.01, 0.3), Velocity::ZERO);
+        assert_eq!(without_noise(-0.06, 0.3), Velocity::new(-0.06, 0.1));
+        assert_eq!(without_noise(1.0, 0.3), Velocity::new(1.0, 0.3));
+        let differential = Velocity::new(-0.01, 0.3);
+        assert_eq!(Robot::jackal().without_noise(differential), differential);
     }
 
     #[test]

@@ -124,12 +124,13 @@ impl<'a> Judge<'a> {
     /// The rollout of each candidate, or the rule that refuses it.
     fn judge(&mut self, lattice: &Lattice) -> Vec<Result<Rollout, &'static str>> {
         self.roller.roll(lattice, &mut self.memory);
-        let mover_rule = self.window.mover_rule(self.roller.scene);
+        let scene = self.roller.scene;
+        let mover_rule = self.window.mover_rule(scene);
         let rollouts = self.memory.rollouts();
         let judged = |(index, (velocity, rollout)): (usize, (Velocity, Option<Rollout>))| {
             let rollout = rollout.ok_or(CONTACT)?;
             let distances_m = rollouts.distances(index, rollout.distance_m);
-            let distance_m = self.window.admitted(&mover_rule, velocity, distances_m)?;
+            let distance_m = self.window.admitted((scene, &mover_rule), velocity, distances_m)?;
             Ok(Rollout { distance_m, ..rollout })
         };
         rollouts.all(lattice).enumerate().map(judged).collect()

@@ -1,11 +1,12 @@
 use super::*;
 use crate::geometry::{Point, Polyline};
+use crate::local::Remedy;
 use crate::local::{
     Admissible, Change, Decision, DriveMemory, Dwa, DwaConfig, Evaluation, LocalPlanner, NoCommand,
     Scratch,
 };
 use crate::map::{CellState, DistanceField, FieldConfig, GridFrame, OccupancyGrid};
-use crate::robot::Footprint;
+use crate::robot::{Footprint, Limits};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -44,6 +45,10 @@ fn small(shape: usize) -> Robot {
     match shape {
         0 => robot,
         1 => Robot { footprint: Footprint::rectangle(0.6, 0.3).unwrap(), ..robot },
+        2 => {
+            let limits = Limits { min_turning_radius_m: 0.3, v_min_mps: -0.3, ..robot.limits };
+            Robot { limits, ..robot }
+        }
         // Turns around its back.
         _ => {
             let vertices = [[0.5, 0.1], [-0.05, 0.1], [-0.05, -0.1], [0.5, -0.1]];
@@ -205,7 +210,7 @@ proptest! {
     #[test]
     fn says_what_a_decision_does(blocks in prop::collection::vec((0i32..60, 0i32..60), 0..60),
                                  heading in -3.0..3.0f64, speed in 0.0..0.5f64, turn in -1.0..1.0f64,
-                                 shape in 0..3usize, prediction in prop_oneof![Just(Prediction::Arcs), Just(Prediction::Euler)],
+                                 shape in 0..4usize, prediction in prop_oneof![Just(Prediction::Arcs), Just(Prediction::Euler)],
                                  is_usual: bool) {
         let world = grid(|x, y| blocks.iter().any(|&(bx, by)| (bx - x).abs() < 2 && (by - y).abs() < 2));
         let robot = small(shape);
@@ -246,6 +251,8 @@ proptest! {
         }
 
         prop_assert_eq!(explanation.remedies.is_empty(), evaluation.driving > 0);
+        let turns = |remedy: &Remedy| matches!(remedy.change, Change::Turn { .. });
+        prop_assert!(robot.limits.turns_in_place() || !explanation.remedies.iter().any(turns));
         for remedy in &explanation.remedies {
             // If no turn helps, all of them were tried, not only this one.
             if remedy.frees || !matches!(remedy.change, Change::Turn { .. } | Change::Wait { .. } | Change::BackUp { .. }) {
@@ -257,7 +264,7 @@ proptest! {
     /// Near a wall that it faces, so that cases in which nothing drives are more frequent.
     #[test]
     fn what_frees_is_true(gap_m in 0.0..0.03f64, heading in -0.7..0.7f64, speed in prop_oneof![Just(0.0), 0.1..0.5f64],
-                          shape in 0..3usize, lane in 0..2usize) {
+                          shape in 0..4usize, lane in 0..2usize) {
         let world = grid(|x, y| x >= 40 || (lane == 1 && !(26..=33).contains(&y)));
         let robot = small(shape);
         let config = config(&robot, Prediction::Arcs);

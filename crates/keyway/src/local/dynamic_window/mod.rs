@@ -241,18 +241,13 @@ impl DynamicWindow {
         let rules = &RULES[..RULES.len() - usize::from(limits.turns_in_place())];
         let mut rejected = Rejections::none_by(rules);
         rejected.add_many(CONTACT, candidates - rollouts.count(lattice, |_| true));
-        if !limits.turns_in_place() {
-            rollouts.retain(lattice, |Velocity { v, omega, .. }, distances_m| {
-                let is_wide = omega.abs() <= limits.turn_rate_at(v) + ROUNDING_RADPS;
-                let reverses = scene.velocity.v * v < 0.0;
-                let admitted = (is_wide && !reverses).then_some(distances_m.evaluated_m);
-                admitted.ok_or_else(|| rejected.add(TURNING_RADIUS)).ok()
-            });
-        }
-        if self.config.admissible != Admissible::Rollout || !scene.movers.is_empty() {
+        let is_ruled = self.config.admissible != Admissible::Rollout
+            || !scene.movers.is_empty()
+            || !limits.turns_in_place();
+        if is_ruled {
             let mover_rule = self.mover_rule(scene);
             rollouts.retain(lattice, |velocity, distances_m| {
-                let admitted = self.admitted(&mover_rule, velocity, distances_m);
+                let admitted = self.admitted((scene, &mover_rule), velocity, distances_m);
                 admitted.map_err(|rule| rejected.add(rule)).ok()
             });
         }
@@ -265,15 +260,25 @@ impl DynamicWindow {
     #[inline]
     fn admitted(
         &self,
-        mover_rule: &MoverRule<'_>,
+        (scene, mover_rule): (&Scene<'_>, &MoverRule<'_>),
         velocity: Velocity,
         Distances { stopping_m, evaluated_m }: Distances,
     ) -> Result<f64, &'static str> {
+        if !self.can_drive(scene.velocity, velocity) {
+            return Err(TURNING_RADIUS);
+        }
         if let Some(rule) = self.refused_by(velocity, stopping_m) {
             return Err(rule);
         }
         let room_m = mover_rule.room_m(velocity).ok_or(MOVER)?;
         Ok(evaluated_m.min(room_m))
+    }
+
+    /// True if the wheels can have a velocity, coming from another.
+    fn can_drive(&self, from: Velocity, Velocity { v, omega, .. }: Velocity) -> bool {
+        let limits = &self.robot.limits;
+        let is_wide = omega.abs() <= limits.turn_rate_at(v) + ROUNDING_RADPS;
+        limits.turns_in_place() || is_wide && from.v * v >= 0.0
     }
 
     /// Fills in all candidates of a cycle.
