@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct DeadBand {
     v: Axis,
-    omega: Axis,
+    /// `None` for a car-like robot, which steers: its turn rate follows from its speed.
+    omega: Option<Axis>,
 }
 
 /// Speed or turn rate.
@@ -38,59 +39,87 @@ impl DeadBand {
         let (limits, standing) = (&robot.limits, robot.standing());
         let full_mps = limits.v_max_mps.max(-limits.v_min_mps);
         let v = Axis::new(full_mps, standing.v);
-        Self { v, omega: Axis::new(limits.omega_max_radps, standing.omega) }
+        let omega = Axis::new(limits.omega_max_radps, standing.omega);
+        Self { v, omega: limits.turns_in_place().then_some(omega) }
     }
 
     /// Takes in the velocity of the robot and the acting command. A command is too small if it
     /// has acted for `patience_s` \[s\] without any motion.
     pub(super) fn note(&mut self, time: Time, now: Velocity, command: Velocity, patience_s: f64) {
         self.v.note(time, (now.v, command.v), patience_s);
-        self.omega.note(time, (now.omega, command.omega), patience_s);
+        if let Some(omega) = &mut self.omega {
+            omega.note(time, (now.omega, command.omega), patience_s);
+        }
     }
 
     /// The largest speed and turn rate that have not moved the robot; 0 if none is known.
-    pub(super) const fn too_small(&self) -> Velocity {
-        Velocity { v: self.v.too_small, omega: self.omega.too_small }
+    pub(super) fn too_small(&self) -> Velocity {
+        self.each(|axis| axis.too_small)
     }
 
     /// Like [`Self::too_small`], if a larger command has moved the robot; otherwise 0.
     pub(super) fn surely_too_small(&self) -> Velocity {
-        let sure = |axis: &Axis| if axis.is_sure { axis.too_small } else { 0.0 };
-        Velocity { v: sure(&self.v), omega: sure(&self.omega) }
+        self.each(|axis| if axis.is_sure { axis.too_small } else { 0.0 })
     }
 
     /// The smallest speed and turn rate that are given; 0 if there is no limit.
     pub(super) fn least(&self) -> Velocity {
-        Velocity::new(self.v.least(), self.omega.least())
+        self.each(Axis::least)
+    }
+
+    fn each(&self, of: impl Fn(&Axis) -> f64) -> Velocity {
+        Velocity::new(of(&self.v), self.omega.as_ref().map_or(0.0, of))
     }
 
     /// The command that the motors can follow and that is closest to the requested velocity.
     pub(super) fn given(&self, now: Velocity, asked: Velocity) -> Velocity {
-        let parts = [self.v.part(asked.v), self.omega.part(asked.omega)];
+        let Some(omega) = &self.omega else { return self.given_to_car(now.v, asked) };
+        let parts = [self.v.part(asked.v), omega.part(asked.omega)];
         let given =
-            Velocity::new(self.v.given(now.v, asked.v), self.omega.given(now.omega, asked.omega));
+            Velocity::new(self.v.given(now.v, asked.v), omega.given(now.omega, asked.omega));
         // A robot that is to creep does not stay at rest forever.
-        let stands = self.v.is_standing(now.v) && self.omega.is_standing(now.omega);
+        let stands = self.v.is_standing(now.v) && omega.is_standing(now.omega);
         if given != Velocity::ZERO || parts == [0.0; 2] || !stands {
             return given;
         }
         if parts[0] >= parts[1] {
             Velocity::new(self.v.least().copysign(asked.v), 0.0)
         } else {
-            Velocity::new(0.0, self.omega.least().copysign(asked.omega))
+            Velocity::new(0.0, omega.least().copysign(asked.omega))
         }
     }
 
+    /// A command on the same arc.
+    fn given_to_car(&self, now_mps: f64, asked: Velocity) -> Velocity {
+        if asked.v == 0.0 {
+            return asked;
+        }
+        let given_mps = match self.v.given(now_mps, asked.v) {
+            0.0 if self.v.is_standing(now_mps) => self.v.least().copysign(asked.v),
+            given_mps => given_mps,
+        };
+        Velocity::new(given_mps, asked.omega * (given_mps / asked.v))
+    }
+
+    /// True for the dead band of a robot of the same kind.
+    pub(super) const fn is_like(&self, other: &Self) -> bool {
+        self.omega.is_some() == other.omega.is_some()
+    }
+
     /// Forgets the current attempt, but not what was learned.
-    pub(super) const fn pause(&mut self) {
-        (self.v.asked, self.omega.asked) = (None, None);
+    pub(super) fn pause(&mut self) {
+        self.axes().for_each(|axis| axis.asked = None);
     }
 
     /// Forgets everything.
-    pub(super) const fn forget(&mut self) {
-        (self.v.too_small, self.omega.too_small) = (0.0, 0.0);
-        (self.v.is_sure, self.omega.is_sure) = (false, false);
-        self.pause();
+    pub(super) fn forget(&mut self) {
+        for axis in self.axes() {
+            (axis.too_small, axis.is_sure, axis.asked) = (0.0, false, None);
+        }
+    }
+
+    fn axes(&mut self) -> impl Iterator<Item = &mut Axis> {
+        [&mut self.v].into_iter().chain(&mut self.omega)
     }
 }
 

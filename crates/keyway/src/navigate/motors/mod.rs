@@ -217,6 +217,7 @@ impl Motors {
             self.smoothing.as_ref().is_some_and(|own| stored.window.is_like(&own.window))
         };
         let is_own = stored.filter.is_like(&self.filter)
+            && stored.dead_band.is_like(&self.dead_band)
             && stored.smoothing.is_some() == self.smoothing.is_some()
             && stored.smoothing.as_ref().is_none_or(is_like);
         self.under_way.take_up(&stored.commands);

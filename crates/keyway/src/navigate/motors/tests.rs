@@ -240,6 +240,26 @@ fn commands_that_move_nothing_are_made_larger() {
     assert_eq!(motors.within_reach(Velocity::new(0.09, 0.0), Velocity::new(0.05, 0.0)).v, 0.0);
 }
 
+/// A car-like robot does not turn on the spot: what does not move is its speed alone.
+#[test]
+fn commands_that_move_no_car_are_made_larger_on_the_same_arc() {
+    let mut robot = Robot::small();
+    robot.limits.min_turning_radius_m = 0.3;
+    let mut real = Real { dead_band: Velocity::new(0.06, 0.0), ..Real::new(0) };
+    let motors = driven(&robot, &mut real, 3.0);
+    let (too_small, least) = (motors.too_small(), motors.least());
+    assert!((0.04..0.06).contains(&too_small.v) && too_small.omega == 0.0, "{too_small:?}");
+    assert!(real.pose.point().norm() > 0.3, "{:?}", real.pose);
+    let given = |v, omega| motors.within_reach(Velocity::ZERO, Velocity::new(v, omega));
+    let near = |a: Velocity, v: f64, omega: f64| {
+        (a.v - v).abs() < 1e-12 && (a.omega - omega).abs() < 1e-12
+    };
+    assert!(near(given(0.001, 0.003), least.v, 3.0 * least.v));
+    assert!(near(given(-0.05, 0.1), -least.v, 2.0 * least.v));
+    assert!(near(given(0.3, 0.9), 0.3, 0.9));
+    assert_eq!(given(0.0, 0.0), Velocity::ZERO);
+}
+
 #[test]
 fn motors_without_a_dead_band_have_none() {
     for name in ["small", "jackal", "paper"] {
