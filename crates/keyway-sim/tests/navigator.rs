@@ -183,26 +183,34 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
     assert_eq!(unwatched.routes_planned(), 1);
 }
 
-/// A scan of a wall of 7 m, 2 m ahead of a jackal at (2, 2), with a passage of 0.6 m: wide enough
-/// to drive through, too narrow to turn in.
-fn wall_with_a_passage() -> Scan {
-    let bearing_rad = |i: i32| -1.2 + 0.005 * f64::from(i);
+/// A scan of a wall of 7 m, 2 m ahead of a jackal at (2, 2), and of a post beside its end if
+/// `is_cut`. While it is open, the wall has a passage of 0.6 m: wide enough to drive through, too
+/// narrow to turn in.
+fn wall(is_open: bool, is_cut: bool) -> Scan {
+    let bearing_rad = |i: i32| -1.4 + 0.005 * f64::from(i);
     let range = |i: i32| {
         let y = 2.0 + 2.0 * bearing_rad(i).tan();
-        let is_wall = (0.0..7.0).contains(&y) && (y - 2.0).abs() >= 0.3;
-        if is_wall { 2.0 / bearing_rad(i).cos() } else { f64::INFINITY }
+        let is_wall = (0.0..7.0).contains(&y) && !(is_open && (y - 2.0).abs() < 0.3);
+        let is_post = is_cut && (1.2..1.3).contains(&bearing_rad(i));
+        if is_wall {
+            2.0 / bearing_rad(i).cos()
+        } else if is_post {
+            3.0
+        } else {
+            f64::INFINITY
+        }
     };
     Scan {
         angle_min_rad: bearing_rad(0),
         angle_increment_rad: 0.005,
         range_min_m: 0.0,
         range_max_m: 30.0,
-        ranges_m: (0..=480).map(range).collect(),
+        ranges_m: (0..=560).map(range).collect(),
     }
 }
 
 /// The lengths of the routes of a jackal that stays where it sees that wall, cycle by cycle.
-fn lengths_before_the_passage(detour_m: f64, cycles: u32) -> Vec<f64> {
+fn lengths_before_a_wall(detour_m: f64, scans: impl IntoIterator<Item = Scan>) -> Vec<f64> {
     let frame = GridFrame::new(240, 200, 0.05, Pose::default()).unwrap();
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
     let (robot, start) = (Robot::jackal(), Point::new(2.0, 2.0));
@@ -211,27 +219,40 @@ fn lengths_before_the_passage(detour_m: f64, cycles: u32) -> Vec<f64> {
     let goal = Point::new(6.0, 2.0);
     let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
     let pose = Pose::new(start.x, start.y, 0.0);
-    let steps = (0..cycles).map(|_| {
-        next_step(&mut navigator, pose, Velocity::ZERO, &wall_with_a_passage());
+    let steps = scans.into_iter().map(|scan| {
+        next_step(&mut navigator, pose, Velocity::ZERO, &scan);
         navigator.route().unwrap().smoothed.length_m()
     });
     steps.collect()
 }
 
 /// Around the wall it is at least 2 sqrt(2^2 + 5^2) = 10.8 m, through the passage about 4 m.
+const AROUND_M: f64 = 10.7;
+
 #[test]
 fn a_new_route_takes_no_long_detour_for_more_clearance() {
-    let length_m = |detour_m| lengths_before_the_passage(detour_m, 1)[0];
+    let length_m = |detour_m| lengths_before_a_wall(detour_m, [wall(true, false)])[0];
     assert!((4.0..5.0).contains(&length_m(2.0)), "{}", length_m(2.0));
     assert!((4.0..5.0).contains(&length_m(6.0)), "{}", length_m(6.0));
-    assert!(length_m(8.0) > 10.7, "{}", length_m(8.0));
+    assert!(length_m(8.0) > AROUND_M, "{}", length_m(8.0));
 }
 
 #[test]
 fn a_robot_without_progress_takes_any_detour() {
-    let lengths_m = lengths_before_the_passage(2.0, 200);
-    let around = lengths_m.iter().position(|length_m| *length_m > 10.7).unwrap();
-    assert!(around > 10 && lengths_m[around..].iter().all(|length_m| *length_m > 10.7));
+    let lengths_m = lengths_before_a_wall(2.0, vec![wall(true, false); 200]);
+    let around = lengths_m.iter().position(|length_m| *length_m > AROUND_M).unwrap();
+    assert!(around > 10 && lengths_m[around..].iter().all(|length_m| *length_m > AROUND_M));
+}
+
+#[test]
+fn a_gap_that_has_closed_is_not_trusted_again() {
+    let scans = [wall(true, false), wall(false, false), wall(true, false), wall(true, true)];
+    let lengths_m = lengths_before_a_wall(2.0, scans);
+    assert!(lengths_m[0] < 5.0 && lengths_m[1] > AROUND_M, "{lengths_m:?}");
+    // The post cuts the way around.
+    assert!(lengths_m[3] != lengths_m[2] && lengths_m[3] > AROUND_M, "{lengths_m:?}");
+    let never_closed = [wall(true, false), wall(true, true)];
+    assert!(lengths_before_a_wall(2.0, never_closed)[1] < 5.0);
 }
 
 /// The message uses metres and the radius of the robot, because cells and the clearance of a layer

@@ -54,10 +54,10 @@ pub(super) struct Task {
     /// it, none is tried again.
     #[serde(default)]
     pub(super) led_from: Option<Point>,
-    /// True once the robot has made no progress on this leg: its further routes have the largest
-    /// clearance, however long they are.
+    /// True once the robot has made no progress on this leg, or its route was closed and the next
+    /// one was a detour: further routes have the largest clearance, however long they are.
     #[serde(default)]
-    pub(super) was_held_up: bool,
+    pub(super) takes_any_detour: bool,
     /// The obstacle that the robot has to leave first, until it has.
     pub(super) too_near: Option<StartTooNear>,
 }
@@ -161,7 +161,7 @@ impl Task {
             order: RecoveryCursor::default(),
             waited_s: 0.0,
             led_from: None,
-            was_held_up: false,
+            takes_any_detour: false,
             too_near,
         }
     }
@@ -169,7 +169,7 @@ impl Task {
     pub(super) const fn begin_next_leg(&mut self) {
         self.passed += 1;
         self.waited_s = 0.0;
-        self.was_held_up = false;
+        self.takes_any_detour = false;
     }
 
     pub(super) fn next_stop(&self) -> Point {

@@ -14,7 +14,7 @@ impl Deciding<'_> {
     pub(super) fn recover(&mut self) {
         self.task.watch = Watch::NEW;
         self.task.mode = Mode::Following;
-        self.task.was_held_up = true;
+        self.task.takes_any_detour = true;
         for _ in 0..self.stack.controller.recoveries.len() {
             let order = &self.stack.controller.recoveries;
             let remaining_m = self.task.guidance.remaining_m;

@@ -157,10 +157,13 @@ impl Deciding<'_> {
         self.world.walked.avoid(&[]);
         let (stop, config) = (self.task.next_stop(), &self.stack.controller);
         let detour_m =
-            if self.task.was_held_up { f64::INFINITY } else { config.detour_for_clearance_m };
+            if self.task.takes_any_detour { f64::INFINITY } else { config.detour_for_clearance_m };
         let ends = (self.pose.point(), stop);
         match self.world.router.again_within(ends, config.replan_budget, detour_m) {
-            Ok(route) => self.take(route),
+            Ok(route) => {
+                self.task.takes_any_detour |= self.is_detour(&route, detour_m);
+                self.take(route)
+            }
             Err(why) => {
                 let longest_s = config.longest_wait_s.max(config.blocked_s);
                 let wait_s = (2.0 * self.task.waited_s).clamp(config.blocked_s, longest_s);
@@ -170,6 +173,15 @@ impl Deciding<'_> {
                 Replanned::Failed
             }
         }
+    }
+
+    /// True if a new route to the same stop is longer than the rest of the last one by more than
+    /// this: a gap has closed. If it seemed to open again now and then, the robot would drive to
+    /// and fro between the two.
+    fn is_detour(&self, route: &Route, detour_m: f64) -> bool {
+        let RestOfRoute { path, covered_m } = self.rest();
+        let is_to_same = path.points().last().is_some_and(|end| *end == self.task.next_stop());
+        is_to_same && route.smoothed.length_m() > path.length_m() - covered_m + detour_m
     }
 
     /// Passes near a way-point that still cannot be reached, or skips it, as configured in the
