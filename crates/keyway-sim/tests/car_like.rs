@@ -1,13 +1,18 @@
 //! Whole runs of car-like robots: of a differential drive with one limit more.
 #![allow(clippy::unwrap_used)] // the lint spares tests, but not their helpers
 
+#[path = "../../keyway/tests/support/driving.rs"]
+mod driving;
 mod hall;
 
+use driving::bound_for;
 use hall::hall;
-use keyway::geometry::{Disc, Point, wrap_angle};
-use keyway::navigate::{Goal, Stack};
+use keyway::geometry::{Disc, Point, Pose, Velocity, wrap_angle};
+use keyway::navigate::{Goal, Stack, Step};
 use keyway::robot::Robot;
+use keyway::sense::Observation;
 use keyway_sim::episode::{Episode, EpisodeOutcome, RobotReport, run_episode};
+use keyway_sim::sim::{Action, Control, Disturbances, Participant, RunRules, World, simulate};
 
 /// A robot with this turning radius \[m\], which drives backwards, too.
 fn car(base: Robot, min_turning_radius_m: f64) -> Robot {
@@ -51,6 +56,55 @@ fn they_reach_their_goals_on_arcs() {
         let report = run_episode(&episode(&robot, None)).unwrap().first();
         assert_eq!(report.outcome, EpisodeOutcome::Reached, "{:?}", report.reason);
         check(&robot, &report);
+    }
+}
+
+/// The commands of a run, which the wheels of a real robot have to follow, with odometry that is
+/// off by 5 %.
+fn commands(robot: &Robot, stack: &Stack) -> Vec<Velocity> {
+    let (map, start) = (hall(), Point::new(1.5, 1.5));
+    let goal = Goal { heading_rad: Some(1.5), ..Point::new(10.5, 6.5).into() };
+    let mut navigator = bound_for(&map, &stack.fit(robot).unwrap(), start, goal).unwrap();
+    let mut commands = Vec::new();
+    let mut decide = |observation: &Observation<'_>| {
+        navigator.observe(observation);
+        let step = navigator.step();
+        commands.push(step.command());
+        let action = match step {
+            Step::Arrived => Action::Arrived,
+            step => Action::Drive(step.command()),
+        };
+        let remaining_m = navigator.guidance().unwrap().remaining_m;
+        Control { action, remaining_m, route: navigator.routes_planned(), turn_left_rad: 0.0 }
+    };
+    let mut disturbances = Disturbances::default();
+    disturbances.localisation.v_relative = 0.05;
+    disturbances.localisation.omega_relative = 0.05;
+    let rules = RunRules { time_limit_s: 60.0, ..RunRules::default() };
+    let world = World::from_known(&map, vec![Disc::new(Point::new(5.6, 3.0), 0.2)]).unwrap();
+    let participant = Participant {
+        robot,
+        start: Pose::new(start.x, start.y, 0.0),
+        goal: Point::new(10.5, 6.5),
+        disturbances,
+        rules,
+        controller: &mut decide,
+    };
+    simulate(&world, &mut [participant]).unwrap();
+    commands
+}
+
+#[test]
+fn no_command_turns_more_tightly_than_the_wheels_can() {
+    for robot in cars() {
+        for name in ["keyway", "key-point-fusion", "dwa-to-goal", "astar-follow"] {
+            let commands = commands(&robot, &Stack::by_name(name, &robot).unwrap());
+            assert!(commands.len() > 10 && commands.iter().any(|command| command.omega != 0.0));
+            let radius_m = robot.limits.min_turning_radius_m;
+            for Velocity { v, omega, .. } in commands {
+                assert!(omega.abs() <= v.abs() / radius_m + 1e-9, "{name}: {v} {omega}");
+            }
+        }
     }
 }
 
