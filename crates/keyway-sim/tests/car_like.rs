@@ -101,6 +101,8 @@ fn no_command_turns_more_tightly_than_the_wheels_can() {
             let commands = commands(&robot, &Stack::by_name(name, &robot).unwrap());
             assert!(commands.len() > 10 && commands.iter().any(|command| command.omega != 0.0));
             let radius_m = robot.limits.min_turning_radius_m;
+            // The wheels stop before they change their direction.
+            assert!(commands.windows(2).all(|pair| pair[0].v * pair[1].v >= 0.0), "{name}");
             for Velocity { v, omega, .. } in commands {
                 assert!(omega.abs() <= v.abs() / radius_m + 1e-9, "{name}: {v} {omega}");
             }

@@ -184,13 +184,19 @@ fn plans_again_when_and_only_when_something_new_is_in_the_way() {
 }
 
 /// A scan of a wall of 7 m, 2 m ahead of a jackal at (2, 2), and of a post beside its end if
-/// `is_cut`. While it is open, the wall has a passage of 0.6 m: wide enough to drive through, too
-/// narrow to turn in.
+/// `is_cut`. If it is open, it has a passage of 0.6 m straight ahead: wide enough to drive through,
+/// too narrow to turn in.
 fn wall(is_open: bool, is_cut: bool) -> Scan {
+    wall_with_passage(is_open.then_some(2.0), is_cut)
+}
+
+/// The same with a passage at another place.
+fn wall_with_passage(passage_y_m: Option<f64>, is_cut: bool) -> Scan {
     let bearing_rad = |i: i32| -1.4 + 0.005 * f64::from(i);
     let range = |i: i32| {
         let y = 2.0 + 2.0 * bearing_rad(i).tan();
-        let is_wall = (0.0..7.0).contains(&y) && !(is_open && (y - 2.0).abs() < 0.3);
+        let is_passage = passage_y_m.is_some_and(|middle_m| (y - middle_m).abs() < 0.3);
+        let is_wall = (0.0..7.0).contains(&y) && !is_passage;
         let is_post = is_cut && (1.2..1.3).contains(&bearing_rad(i));
         if is_wall {
             2.0 / bearing_rad(i).cos()
@@ -209,19 +215,26 @@ fn wall(is_open: bool, is_cut: bool) -> Scan {
     }
 }
 
-/// The lengths of the routes of a jackal that stays where it sees that wall, cycle by cycle.
-fn lengths_before_a_wall(detour_m: f64, scans: impl IntoIterator<Item = Scan>) -> Vec<f64> {
+/// A jackal at (2, 2) that is to drive to (6, 2).
+fn before_a_wall(detour_m: f64) -> Navigator {
     let frame = GridFrame::new(240, 200, 0.05, Pose::default()).unwrap();
     let map = OccupancyGrid::from_fn(frame, |_| CellState::Free);
     let (robot, start) = (Robot::jackal(), Point::new(2.0, 2.0));
     let mut stack = Stack::keyway(&robot);
     stack.controller.detour_for_clearance_m = detour_m;
-    let goal = Point::new(6.0, 2.0);
-    let mut navigator = bound_for(&map, &stack.fit(&robot).unwrap(), start, goal).unwrap();
-    let pose = Pose::new(start.x, start.y, 0.0);
+    bound_for(&map, &stack.fit(&robot).unwrap(), start, Point::new(6.0, 2.0)).unwrap()
+}
+
+fn length_m(navigator: &Navigator) -> f64 {
+    navigator.route().unwrap().smoothed.length_m()
+}
+
+/// The lengths of the routes of that robot, which stays where it is, cycle by cycle.
+fn lengths_m(navigator: &mut Navigator, scans: impl IntoIterator<Item = Scan>) -> Vec<f64> {
+    let pose = Pose::new(2.0, 2.0, 0.0);
     let steps = scans.into_iter().map(|scan| {
-        next_step(&mut navigator, pose, Velocity::ZERO, &scan);
-        navigator.route().unwrap().smoothed.length_m()
+        next_step(navigator, pose, Velocity::ZERO, &scan);
+        length_m(navigator)
     });
     steps.collect()
 }
@@ -231,15 +244,16 @@ const AROUND_M: f64 = 10.7;
 
 #[test]
 fn a_new_route_takes_no_long_detour_for_more_clearance() {
-    let length_m = |detour_m| lengths_before_a_wall(detour_m, [wall(true, false)])[0];
-    assert!((4.0..5.0).contains(&length_m(2.0)), "{}", length_m(2.0));
-    assert!((4.0..5.0).contains(&length_m(6.0)), "{}", length_m(6.0));
+    let length_m = |detour_m| lengths_m(&mut before_a_wall(detour_m), [wall(true, false)])[0];
+    for detour_m in [0.0, 2.0, 6.0] {
+        assert!((4.0..5.0).contains(&length_m(detour_m)), "{}", length_m(detour_m));
+    }
     assert!(length_m(8.0) > AROUND_M, "{}", length_m(8.0));
 }
 
 #[test]
 fn a_robot_without_progress_takes_any_detour() {
-    let lengths_m = lengths_before_a_wall(2.0, vec![wall(true, false); 200]);
+    let lengths_m = lengths_m(&mut before_a_wall(2.0), vec![wall(true, false); 200]);
     let around = lengths_m.iter().position(|length_m| *length_m > AROUND_M).unwrap();
     assert!(around > 10 && lengths_m[around..].iter().all(|length_m| *length_m > AROUND_M));
 }
@@ -247,12 +261,26 @@ fn a_robot_without_progress_takes_any_detour() {
 #[test]
 fn a_gap_that_has_closed_is_not_trusted_again() {
     let scans = [wall(true, false), wall(false, false), wall(true, false), wall(true, true)];
-    let lengths_m = lengths_before_a_wall(2.0, scans);
+    let mut navigator = before_a_wall(2.0);
+    let lengths_m = lengths_m(&mut navigator, scans);
     assert!(lengths_m[0] < 5.0 && lengths_m[1] > AROUND_M, "{lengths_m:?}");
     // The post cuts the way around.
     assert!(lengths_m[3] != lengths_m[2] && lengths_m[3] > AROUND_M, "{lengths_m:?}");
-    let never_closed = [wall(true, false), wall(true, true)];
-    assert!(lengths_before_a_wall(2.0, never_closed)[1] < 5.0);
+    // The same goal once more is no reason to trust it; another one is.
+    navigator.set_goal(Point::new(6.0, 2.0)).unwrap();
+    assert!(length_m(&navigator) > AROUND_M);
+    navigator.set_goal(Point::new(6.0, 2.1)).unwrap();
+    assert!(length_m(&navigator) < 5.0, "{}", length_m(&navigator));
+}
+
+/// From the passage at 2 m to the one at 4 m it is 1.7 m more, again and again.
+#[test]
+fn detours_add_up() {
+    let at = |passage_y_m| wall_with_passage(Some(passage_y_m), false);
+    let scans = [2.0, 4.0, 2.0, 4.0, 2.0, 4.0].map(at);
+    let lengths_m = lengths_m(&mut before_a_wall(2.0), scans);
+    assert!(lengths_m[..3].iter().all(|length_m| *length_m < 6.5), "{lengths_m:?}");
+    assert!(lengths_m[5] > AROUND_M, "{lengths_m:?}");
 }
 
 /// The message uses metres and the radius of the robot, because cells and the clearance of a layer

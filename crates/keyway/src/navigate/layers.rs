@@ -7,7 +7,7 @@ use crate::robot::Robot;
 use crate::route::looser_clearance_m;
 
 /// The map layers of one robot, widest clearance first: a route uses the first one that has a
-/// path.
+/// path, or the first one on which it is no long detour.
 ///
 /// The last one is for a robot that senses obstacles along its route: a lane between a sensed
 /// obstacle and a wall may fit the robot although it contains no cell whose centre keeps the

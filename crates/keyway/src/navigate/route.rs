@@ -218,15 +218,17 @@ impl Router {
         if length_m(route) <= query.start.distance(query.goal) + detour_m {
             return None;
         }
-        let is_narrower = |map: &&SearchMap| map.config().clearance_m < route.clearance_m;
+        let is_narrower = |map: &SearchMap| map.config().clearance_m < route.clearance_m;
         let mut on = |map| plan_route(map, &**planner, &**smoother, query, workspace, &mut ()).ok();
-        let narrower = layers.fitting().iter().filter(is_narrower);
-        let shortest = on(narrower.clone().last()?)?;
+        let fitting = layers.fitting();
+        let (narrowest, wider) = fitting.split_last().filter(|(last, _)| is_narrower(last))?;
+        let shortest = on(narrowest)?;
         let most_m = length_m(&shortest) + detour_m;
         if length_m(route) <= most_m {
             return None;
         }
-        narrower.filter_map(on).find(|route| length_m(route) <= most_m)
+        let mut between = wider.iter().filter(|map| is_narrower(map)).filter_map(on);
+        between.find(|route| length_m(route) <= most_m).or(Some(shortest))
     }
 
     /// The route on the first of the widest maps that has one.

@@ -45,13 +45,14 @@ pub struct ControllerConfig {
     pub goal_tolerance_m: f64,
     /// Heading tolerance of a goal with a heading \[rad\].
     pub goal_yaw_tolerance_rad: f64,
-    /// Clearance of a route if no path keeps `map.clearance_m` \[m\].
+    /// Clearance of a route if no path keeps `map.clearance_m`, or only too long a one \[m\].
     pub least_clearance_m: f64,
-    /// Longest detour of a new route, planned on the way, for more clearance than
-    /// `least_clearance_m` \[m\]: it has the largest clearance up to `map.clearance_m` at which it
-    /// is no longer than this and the shortest one with the least clearance. 2 m in stack files
-    /// without this field. The first route of a task has the largest clearance, however long it
-    /// is.
+    /// Longest detour of a new route for more clearance than `least_clearance_m` \[m\]. A route
+    /// that is planned among sensed obstacles uses the map layer with the largest clearance on
+    /// which it is at most this much longer than on the one with the least. It uses the largest
+    /// of all, however long that is, once the robot has made no progress on its leg, or has taken
+    /// detours around gaps that closed, of more than this or 2 m altogether; and so does the route
+    /// that a new goal finds on the map alone. 2 m in stack files without this field.
     #[serde(default = "two_metres")]
     pub detour_for_clearance_m: f64,
     /// Tolerated error of a start \[m\]: a robot that touches an obstacle there, but none at a
@@ -86,7 +87,8 @@ pub struct ControllerConfig {
     pub back_up_m: f64,
     /// Duration of `wait` \[s\].
     pub wait_s: f64,
-    /// Node budget of a new route: planning must not hold up the control cycle for long.
+    /// Node budget of each search for a new route: planning must not hold up the control cycle for
+    /// long.
     pub replan_budget: u64,
     /// Longest waiting time \[s\]. After a failed search for a route, the next attempt follows
     /// after `blocked_s`, then after twice as long each time, up to this limit. The robot also

@@ -54,10 +54,13 @@ pub(super) struct Task {
     /// it, none is tried again.
     #[serde(default)]
     pub(super) led_from: Option<Point>,
-    /// True once the robot has made no progress on this leg, or its route was closed and the next
-    /// one was a detour: further routes have the largest clearance, however long they are.
+    /// True once the robot has made no progress on this leg, or gaps on its routes have closed:
+    /// further routes have the largest clearance, however long they are.
     #[serde(default)]
     pub(super) takes_any_detour: bool,
+    /// Sum of what new routes on this leg were longer than the rest of the last one \[m\].
+    #[serde(default)]
+    pub(super) detoured_m: f64,
     /// The obstacle that the robot has to leave first, until it has.
     pub(super) too_near: Option<StartTooNear>,
 }
@@ -162,6 +165,7 @@ impl Task {
             waited_s: 0.0,
             led_from: None,
             takes_any_detour: false,
+            detoured_m: 0.0,
             too_near,
         }
     }
@@ -169,7 +173,15 @@ impl Task {
     pub(super) const fn begin_next_leg(&mut self) {
         self.passed += 1;
         self.waited_s = 0.0;
-        self.takes_any_detour = false;
+        (self.takes_any_detour, self.detoured_m) = (false, 0.0);
+    }
+
+    /// Takes over what an earlier task to the same stop has learned of the gaps on the way.
+    pub(super) fn go_on_from(&mut self, earlier: &Self) {
+        if self.next_stop() == earlier.next_stop() {
+            self.takes_any_detour = earlier.takes_any_detour;
+            self.detoured_m = earlier.detoured_m;
+        }
     }
 
     pub(super) fn next_stop(&self) -> Point {

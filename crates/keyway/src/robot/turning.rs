@@ -61,15 +61,16 @@ impl Limits {
 }
 
 impl Robot {
-    /// A measured velocity without the noise that the wheels of a car-like robot cannot have: at
-    /// rest, a slow motion of the wrong sign would have to be braked first.
-    pub(crate) fn without_noise(&self, measured: Velocity) -> Velocity {
+    /// A measured velocity without the noise that the wheels of a car-like robot cannot have. At
+    /// rest, a slow motion against the present command would have to be braked first.
+    pub(crate) fn without_noise(&self, measured: Velocity, command: Velocity) -> Velocity {
         let limits = &self.limits;
         if limits.turns_in_place() {
             return measured;
         }
-        let is_at_rest = measured.v.abs() <= self.standing().v;
-        if is_at_rest { Velocity::ZERO } else { limits.steered(measured) }
+        // A motion along the command is how every start begins.
+        let is_noise = measured.v.abs() <= self.standing().v && measured.v * command.v <= 0.0;
+        if is_noise { Velocity::ZERO } else { limits.steered(measured) }
     }
 }
 
@@ -107,12 +108,28 @@ mod tests {
     #[test]
     fn noise_at_rest_is_no_motion() {
         let robot = Robot { limits: car(), ..Robot::jackal() };
-        let without_noise = |v, omega| robot.without_noise(Velocity::new(v, omega));
+        let ahead = Velocity::new(0.1, 0.0);
+        let without_noise = |v, omega| robot.without_noise(Velocity::new(v, omega), ahead);
         assert_eq!(without_noise(-0.01, 0.3), Velocity::ZERO);
         assert_eq!(without_noise(-0.06, 0.3), Velocity::new(-0.06, 0.1));
         assert_eq!(without_noise(1.0, 0.3), Velocity::new(1.0, 0.3));
+        assert_eq!(robot.without_noise(Velocity::new(0.01, 0.0), Velocity::ZERO), Velocity::ZERO);
         let differential = Velocity::new(-0.01, 0.3);
-        assert_eq!(Robot::jackal().without_noise(differential), differential);
+        assert_eq!(Robot::jackal().without_noise(differential, ahead), differential);
+    }
+
+    /// Each command is what is reached from the last velocity within a cycle, which may be less
+    /// than what counts as standing.
+    #[test]
+    fn a_slow_start_is_no_noise() {
+        let mut robot = Robot { limits: car(), ..Robot::jackal() };
+        robot.limits.acceleration_mps2 = 0.05 * robot.limits.deceleration_mps2;
+        let mut velocity = Velocity::ZERO;
+        for _ in 0..100 {
+            let known = robot.without_noise(velocity, velocity);
+            velocity = robot.limits.reached(known, Velocity::new(1.0, 0.0), robot.cycle_s);
+        }
+        assert!(velocity.v > 0.5, "{velocity:?}");
     }
 
     #[test]

@@ -103,7 +103,14 @@ impl Motors {
 
     /// The command that the motors can follow and that is closest to the requested velocity.
     pub(super) fn within_reach(&self, now: Velocity, asked: Velocity) -> Velocity {
-        self.dead_band.given(now, asked)
+        let given = self.dead_band.given(now, asked);
+        let limits = &self.drive.limits;
+        if limits.turns_in_place() || given.v == 0.0 {
+            return given;
+        }
+        // A command that was made larger stays on its arc.
+        let v_mps = given.v.clamp(limits.v_min_mps, limits.v_max_mps);
+        Velocity::new(v_mps, given.omega * (v_mps / given.v))
     }
 
     /// The smallest speed and turn rate that the motors follow; 0 if there is no limit.

@@ -244,7 +244,7 @@ fn commands_that_move_nothing_are_made_larger() {
 #[test]
 fn commands_that_move_no_car_are_made_larger_on_the_same_arc() {
     let mut robot = Robot::small();
-    robot.limits.min_turning_radius_m = 0.3;
+    (robot.limits.min_turning_radius_m, robot.limits.v_min_mps) = (0.3, -0.5);
     let mut real = Real { dead_band: Velocity::new(0.06, 0.0), ..Real::new(0) };
     let motors = driven(&robot, &mut real, 3.0);
     let (too_small, least) = (motors.too_small(), motors.least());
@@ -257,6 +257,7 @@ fn commands_that_move_no_car_are_made_larger_on_the_same_arc() {
     assert!(near(given(0.001, 0.003), least.v, 3.0 * least.v));
     assert!(near(given(-0.05, 0.1), -least.v, 2.0 * least.v));
     assert!(near(given(0.3, 0.9), 0.3, 0.9));
+    assert!(near(given(-0.8, 0.4), -0.5, 0.25), "{:?}", given(-0.8, 0.4));
     assert_eq!(given(0.0, 0.0), Velocity::ZERO);
 }
 

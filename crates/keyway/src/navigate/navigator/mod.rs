@@ -253,7 +253,7 @@ impl Navigator {
 
     fn stepped(&mut self, told: &Told, now: Time, staleness: Option<Blocked>) -> Step {
         let &Told { time, pose, velocity } = told;
-        let velocity = self.parts.robot.without_noise(velocity);
+        let velocity = self.parts.robot.without_noise(velocity, self.issued);
         let robot_then = self.world.motors.predicted(time, now, (pose, velocity));
         let (pose_then, velocity_then) = self.world.motors.begin(now, robot_then);
         let Robot { limits, cycle_s, .. } = &*self.parts.robot;

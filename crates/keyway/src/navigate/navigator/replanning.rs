@@ -84,6 +84,7 @@ impl Deciding<'_> {
         self.task.given = None;
         self.record.counts.routes_planned += 1;
         self.record.counts.recoveries.go_around += 1;
+        self.note_detour(&route);
         self.take(route);
         true
     }
@@ -161,7 +162,7 @@ impl Deciding<'_> {
         let ends = (self.pose.point(), stop);
         match self.world.router.again_within(ends, config.replan_budget, detour_m) {
             Ok(route) => {
-                self.task.takes_any_detour |= self.is_detour(&route, detour_m);
+                self.note_detour(&route);
                 self.take(route)
             }
             Err(why) => {
@@ -175,13 +176,23 @@ impl Deciding<'_> {
         }
     }
 
-    /// True if a new route to the same stop is longer than the rest of the last one by more than
-    /// this: a gap has closed. If it seemed to open again now and then, the robot would drive to
-    /// and fro between the two.
-    fn is_detour(&self, route: &Route, detour_m: f64) -> bool {
-        let RestOfRoute { path, covered_m } = self.rest();
-        let is_to_same = path.points().last().is_some_and(|end| *end == self.task.next_stop());
-        is_to_same && route.smoothed.length_m() > path.length_m() - covered_m + detour_m
+    /// Notes how much longer a new route to the same stop is than the rest of the last one: a gap
+    /// has closed. If gaps seemed to open again now and then, the robot would drive to and fro
+    /// between them for ever.
+    fn note_detour(&mut self, route: &Route) {
+        const CLOSED_M: f64 = 2.0;
+        let position = self.pose.point();
+        let Task { route: last, covered_m, .. } = &*self.task;
+        if last.end() != Some(self.task.next_stop()) {
+            return;
+        }
+        let (path, window_m) = (&last.smoothed, 2.0 * self.robot.decision_reach_m());
+        let covered_m = path.nearest_along(position, *covered_m, window_m);
+        let Some(at) = path.at_length(covered_m) else { return };
+        let rest_m = path.length_m() - covered_m + position.distance(at);
+        self.task.detoured_m += (route.smoothed.length_m() - rest_m).max(0.0);
+        let most_m = self.stack.controller.detour_for_clearance_m.max(CLOSED_M);
+        self.task.takes_any_detour |= self.task.detoured_m > most_m;
     }
 
     /// Passes near a way-point that still cannot be reached, or skips it, as configured in the

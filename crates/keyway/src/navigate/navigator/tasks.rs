@@ -72,7 +72,7 @@ impl Navigator {
     pub fn accept(&mut self, planned: Planned) -> Result<(), NavigateError> {
         let Planned { start, changes, inserted_m, is_between_cells, task } = planned;
         let place = self.place.ok_or(NavigateError::PlaceUnknown)?;
-        let task = task?;
+        let mut task = task?;
         if changes != self.world.changes {
             // The route belongs to another map.
             let way_points = &task.asked[..task.asked.len() - 1];
@@ -80,6 +80,9 @@ impl Navigator {
         }
         self.world.add_layer(inserted_m);
         self.world.router.layers.is_between_cells |= is_between_cells;
+        if let Some(earlier) = self.task() {
+            task.go_on_from(earlier);
+        }
         self.ask_for(Some(Errand::Drive(Box::new(task))));
         self.record.counts.routes_planned += 1;
         self.record.counts.ways_taken += 1;
