@@ -1,4 +1,4 @@
-//! Routes of a robot on the widest of its map layers that has a path.
+//! Routes of a robot: on the widest of its map layers, or on a narrower one that is shorter.
 
 use super::headings::fits_within;
 use super::layers::Layers;
